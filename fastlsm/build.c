@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/system/team.h"
 #include "match.h"
 #include "step.h"
 #include "sums/blocks.h"
@@ -16,56 +17,117 @@ typedef struct {
     int region;
 } KeyedRegion;
 
-static int compare_keys(const void *a, const void *b)
+/* Counts the unique regions from the keys of the `count` that may have an equal, which rise, and
+ * frees them; original[p] (unless NULL) = the lowest-numbered particle whose region holds the same
+ * particles. */
+static long collapse(KeyedRegion *keyed, long count, long particles, int *original)
 {
-    const KeyedRegion *x = a, *y = b;
-    if (x->key.high != y->key.high) return x->key.high < y->key.high ? -1 : 1;
-    if (x->key.low != y->key.low) return x->key.low < y->key.low ? -1 : 1;
-    return x->region - y->region;
-}
-
-/* Keys of the regions that may have an equal: those that are not whole cubes. */
-typedef struct {
-    KeyedRegion *keyed; /* [particles] */
-    long count;
-} Keys;
-
-static void add_key(const Lsm *lsm, Keys *keys, long p, const uint64_t *rows)
-{
-    keys->keyed[keys->count++] =
-        (KeyedRegion){lsm_region_key(&lsm->lattice, lsm->w, p, rows), (int)p};
-}
-
-/* Counts the unique regions; original[p] (unless NULL) = the lowest-numbered particle whose region
- * holds the same particles. Frees the keys. */
-static long collapse(Keys *keys, long particles, int *original)
-{
-    KeyedRegion *keyed = keys->keyed;
-    qsort(keyed, (size_t)keys->count, sizeof *keyed, compare_keys);
+    uint64_t mask = 63;
+    while (mask < (uint64_t)count * 2) mask = mask * 2 + 1;
+    int *table = sm_alloc(mask + 1, sizeof *table); /* places in `keyed` + 1 */
     long unique = particles;
     for (long p = 0; p < particles && original; p++) original[p] = (int)p;
-    for (long i = 1; i < keys->count; i++)
-        if (keyed[i].key.low == keyed[i - 1].key.low &&
-            keyed[i].key.high == keyed[i - 1].key.high) {
-            if (original) original[keyed[i].region] = original[keyed[i - 1].region];
-            unique--;
+    for (long i = 0; i < count; i++) {
+        LsmKey key = keyed[i].key, *other = NULL;
+        uint64_t at = key.low & mask;
+        for (; table[at]; at = (at + 1) & mask) {
+            other = &keyed[table[at] - 1].key;
+            if (other->low == key.low && other->high == key.high) break;
         }
+        if (!table[at]) {
+            table[at] = (int)i + 1;
+            continue;
+        }
+        if (original) original[keyed[i].region] = keyed[table[at] - 1].region;
+        unique--;
+    }
+    free(table);
     free(keyed);
     return unique;
 }
 
-long lsm_unique(Lsm *lsm)
+/* Particles and those of them whose regions are whole cubes, which have no equal, before a plane.
+ */
+typedef struct {
+    long particles, whole;
+} Before;
+
+/* [planes + 1]; the caller frees. */
+static Before *count_planes(const Lsm *lsm)
 {
     const LsmLattice *l = &lsm->lattice;
-    uint64_t rows[LSM_MAX_SIDE * LSM_MAX_SIDE];
-    if (lsm->unique >= 0) return lsm->unique;
-    Keys keys = {sm_alloc((size_t)l->count, sizeof *keys.keyed), 0};
-    for (long p = 0; p < l->count; p++) {
-        if (lsm_bit(l, lsm->interior.interior, l->coord[p])) continue;
-        lsm_region_rows(l, &lsm->interior, p, rows);
-        add_key(lsm, &keys, p, rows);
+    long words = (long)l->size[1] * l->words;
+    Before *before = sm_alloc((size_t)l->size[2] + 1, sizeof *before);
+#pragma omp parallel for schedule(static) num_threads(sm_team_for(l->size[2] * words))
+    for (int z = 0; z < l->size[2]; z++)
+        for (long w = z * words; w < (z + 1) * words; w++) {
+            before[z + 1].particles += sm_count_bits(l->bits[w]);
+            before[z + 1].whole += sm_count_bits(lsm->interior.interior[w]);
+        }
+    for (int z = 0; z < l->size[2]; z++) {
+        before[z + 1].particles += before[z].particles;
+        before[z + 1].whole += before[z].whole;
     }
-    return lsm->unique = collapse(&keys, l->count, NULL);
+    return before;
+}
+
+/* Keys of the regions that may have an equal: those that are not whole cubes. */
+static KeyedRegion *room_for_keys(const Lsm *lsm, const Before *before, long *count)
+{
+    const Before *all = &before[lsm->lattice.size[2]];
+    *count = all->particles - all->whole;
+    return sm_alloc((size_t)*count, sizeof(KeyedRegion));
+}
+
+/* Planes `share` of `shares`, of about as many particles. */
+static int share_begin(const Lsm *lsm, const Before *before, int share, int shares)
+{
+    int z = 0, planes = lsm->lattice.size[2];
+    while (z < planes && before[z].particles * shares < before[planes].particles * share) z++;
+    return share == shares ? planes : z;
+}
+
+/* The rows of p's region, unless it is a whole cube and `cubes` is false, and its key, unless it
+ * is. Returns how many members it has. */
+static int find_region(const Lsm *lsm, long p, bool cubes, uint64_t *rows, KeyedRegion *keyed,
+                       bool *whole, bool *simple)
+{
+    const LsmLattice *l = &lsm->lattice;
+    *whole = lsm_bit(l, lsm->interior.interior, l->coord[p]);
+    *simple = true;
+    if (*whole && !cubes) return lsm->side * lsm->side * lsm->side;
+    int members = lsm_region_find(l, &lsm->interior, p, rows, simple);
+    if (!*whole) *keyed = (KeyedRegion){lsm_region_key(l, lsm->w, p, rows), (int)p};
+    return members;
+}
+
+/* What is found of the regions of planes first to before `end`: keys, and, unless they are NULL,
+ * fix-ups and numbers of members. */
+static void find_share(const Lsm *lsm, const Before *before, int first, int end, KeyedRegion *keyed,
+                       FixupsBuilder *fixups, int *members)
+{
+    uint64_t rows[LSM_MAX_SIDE * LSM_MAX_SIDE];
+    bool whole, simple;
+    keyed += before[first].particles - before[first].whole;
+    for (long p = before[first].particles; p < before[end].particles; p++) {
+        int count = find_region(lsm, p, false, rows, keyed, &whole, &simple);
+        if (members) members[p] = count;
+        if (fixups && !simple) lsm_fixups_add(fixups, p, rows);
+        keyed += !whole;
+    }
+}
+
+long lsm_unique(Lsm *lsm)
+{
+    if (lsm->unique >= 0) return lsm->unique;
+    long count;
+    int planes = lsm->lattice.size[2];
+    Before *before = count_planes(lsm);
+    KeyedRegion *keyed = room_for_keys(lsm, before, &count);
+#pragma omp parallel for schedule(dynamic) num_threads(sm_team_for(lsm->lattice.count))
+    for (int z = 0; z < planes; z++) find_share(lsm, before, z, z + 1, keyed, NULL, NULL);
+    free(before);
+    return lsm->unique = collapse(keyed, count, lsm->lattice.count, NULL);
 }
 
 /* In block form, what box sums get wrong is corrected; in a body that can break, whose regions
@@ -75,29 +137,82 @@ static bool corrected(const Lsm *lsm)
     return lsm->box && !(lsm->params.strain_limit > 0);
 }
 
-/* Finds every region, once: counts its members, lists or corrects it, in block form only where box
- * sums get it wrong, and finds its original. listed[p]: it has lists. */
-static void find_regions(Lsm *lsm, int *original, bool *listed)
+/* Finds every region, once: counts its members and corrects what box sums get wrong of it. */
+static void correct_regions(Lsm *lsm)
 {
-    const LsmLattice *l = &lsm->lattice;
-    uint64_t rows[LSM_MAX_SIDE * LSM_MAX_SIDE];
-    Keys keys = {sm_alloc((size_t)l->count, sizeof *keys.keyed), 0};
-    LsmListsBuilder *lists = lsm_lists_open(l, lsm->slot, lsm->w);
-    FixupsBuilder *fixups = corrected(lsm) ? lsm_fixups_open(lsm) : NULL;
-    if (!fixups) lsm_names_reach(lsm->blocks * SM_LANES + 1);
-    for (long p = 0; p < l->count; p++) {
-        bool whole = lsm_bit(l, lsm->interior.interior, l->coord[p]), simple = true;
-        lsm->members[p] = lsm->side * lsm->side * lsm->side;
-        if (!whole || !lsm->box)
-            lsm->members[p] = lsm_region_find(l, &lsm->interior, p, rows, &simple);
-        if (!whole) add_key(lsm, &keys, p, rows);
-        if (fixups && !simple) lsm_fixups_add(fixups, p, rows);
-        listed[p] = !fixups && (!lsm->box || (!simple && !lsm_blocks_regular(lsm, p, rows)));
-        if (listed[p]) lsm_lists_add(lists, p, rows);
+    long count;
+    int shares = sm_team_for(lsm->lattice.count);
+    Before *before = count_planes(lsm);
+    KeyedRegion *keyed = room_for_keys(lsm, before, &count);
+    FixupsBuilder *fixups = lsm_fixups_open(lsm, shares);
+#pragma omp parallel for schedule(static) num_threads(shares)
+    for (int share = 0; share < shares; share++) {
+        int first = share_begin(lsm, before, share, shares),
+            end = share_begin(lsm, before, share + 1, shares);
+        FixupsBuilder *own = lsm_fixups_share(lsm, fixups, share, lsm->layer_block[first]);
+        find_share(lsm, before, first, end, keyed, own, lsm->members);
+        lsm_fixups_finish(own, lsm->layer_block[end]);
     }
-    lsm->unique = collapse(&keys, l->count, original);
+    lsm_fixups_close(fixups, shares, lsm);
+    lsm_lists_close(lsm_lists_open(&lsm->lattice, lsm->slot, lsm->w), &lsm->lists); /* none */
+    free(before);
+    lsm->unique = collapse(keyed, count, lsm->lattice.count, NULL);
+}
+
+/* Regions that are found at once, before they are listed one after the other. */
+typedef struct {
+    uint64_t *rows; /* [count][side^2] */
+    KeyedRegion *keyed;
+    bool *whole;
+    long count;
+} Batch;
+
+static void open_batch(const Lsm *lsm, Batch *batch)
+{
+    const long words = 1 << 17, area = (long)lsm->side * lsm->side;
+    batch->count = words / area > 64 ? words / area : 64;
+    batch->rows = sm_alloc((size_t)(batch->count * area), sizeof *batch->rows);
+    batch->keyed = sm_alloc((size_t)batch->count, sizeof *batch->keyed);
+    batch->whole = sm_alloc((size_t)batch->count, sizeof *batch->whole);
+}
+
+static void find_batch(Lsm *lsm, Batch *batch, long first, long end, bool *listed)
+{
+    long area = (long)lsm->side * lsm->side;
+    int team = sm_team_for((end - first) * area);
+#pragma omp parallel for schedule(static) num_threads(team)
+    for (long p = first; p < end; p++) {
+        bool simple;
+        uint64_t *rows = batch->rows + (p - first) * area;
+        lsm->members[p] = find_region(lsm, p, !lsm->box, rows, &batch->keyed[p - first],
+                                      &batch->whole[p - first], &simple);
+        listed[p] = !lsm->box || (!simple && !lsm_blocks_regular(lsm, p, rows));
+    }
+}
+
+/* The same, but lists regions, in block form only where box sums get them wrong, and finds their
+ * originals. listed[p]: it has lists. */
+static void list_regions(Lsm *lsm, int *original, bool *listed)
+{
+    long n = lsm->lattice.count, room, keys = 0;
+    Batch batch;
+    Before *before = count_planes(lsm);
+    KeyedRegion *keyed = room_for_keys(lsm, before, &room);
+    LsmListsBuilder *lists = lsm_lists_open(&lsm->lattice, lsm->slot, lsm->w);
+    lsm_names_reach(lsm->blocks * SM_LANES + 1);
+    open_batch(lsm, &batch);
+    for (long first = 0, end; first < n; first = end) {
+        end = first + batch.count < n ? first + batch.count : n;
+        find_batch(lsm, &batch, first, end, listed);
+        for (long p = first; p < end; p++) {
+            if (!batch.whole[p - first]) keyed[keys++] = batch.keyed[p - first];
+            if (listed[p])
+                lsm_lists_add(lists, p, batch.rows + (p - first) * lsm->side * lsm->side);
+        }
+    }
     lsm_lists_close(lists, &lsm->lists);
-    if (fixups) lsm_fixups_close(fixups, lsm);
+    lsm->unique = collapse(keyed, keys, n, original);
+    sm_free_all(before, batch.rows, batch.keyed, batch.whole);
 }
 
 /* Lists p among the copies if its region equals an earlier one of its layer, which begins with
@@ -157,6 +272,7 @@ static void tile_blocks(Lsm *lsm)
     size_t lanes = (size_t)lsm->blocks * SM_LANES;
     lsm->tiles = lsm->blocks;
     lsm->tile_slot = sm_alloc(lanes, sizeof(int));
+#pragma omp parallel for schedule(static) num_threads(sm_team_for((long)lanes))
     for (size_t s = 0; s < lanes; s++) lsm->tile_slot[s] = lsm->particle[s] < 0 ? -1 : (int)s;
     lsm->layer_tile = sm_alloc((size_t)lsm->layers + 1, sizeof(long));
     memcpy(lsm->layer_tile, lsm->layer_block, ((size_t)lsm->layers + 1) * sizeof(long));
@@ -175,6 +291,10 @@ static void place_lists(Lsm *lsm, const bool *listed)
     }
     lsm->block_region = lsm->particle;
     if (!box) return;
+    if (lsm->fixups) {
+        lsm_fixups_mark(lsm);
+        return;
+    }
     lsm->block_region = sm_alloc((size_t)lsm->blocks * SM_LANES, sizeof(int));
     for (long s = 0; s < lsm->blocks * SM_LANES; s++) lsm->block_region[s] = -1;
     memset(box->mixed, 0, (size_t)lsm->blocks * sizeof(bool));
@@ -186,7 +306,6 @@ static void place_lists(Lsm *lsm, const bool *listed)
     }
     for (long i = lsm->side; i < lsm->lists.bar_count * lsm->side; i++)
         if (lsm->lists.bar[i]) lsm->listed[(lsm->lists.bar[i] / LSM_NAME - 1) / SM_LANES] = true;
-    if (lsm->fixups) lsm_fixups_mark(lsm);
 }
 
 /* Slots that have rows. */
@@ -208,11 +327,10 @@ static void build_rows(Lsm *lsm)
     };
 }
 
-/* Stores equal records once, so that the constants of a solid's inside stay in cache: moves the
- * different ones to the front and points `index` at them. */
-static void *share_records(void *records, size_t size, long count, int *index, Records *shared)
+/* Moves the different ones of `count` records to the front, in the order in which they are first
+ * met, and points `index` at them. Returns how many there are. */
+static long keep_different(char *record, size_t size, long count, int *index)
 {
-    char *record = records;
     uint64_t mask = 63;
     while (mask < (uint64_t)count * 2) mask = mask * 2 + 1;
     int *table = sm_alloc(mask + 1, sizeof *table); /* record number + 1 */
@@ -235,11 +353,51 @@ static void *share_records(void *records, size_t size, long count, int *index, R
         index[i] = table[at] - 1;
     }
     free(table);
-    *shared = (Records){kept, kept, kept};
-    void *fitted = sm_alloc((size_t)kept, size);
-    memcpy(fitted, records, (size_t)kept * size);
-    free(records);
+    return kept;
+}
+
+/* Stores equal records once, so that the constants of a solid's inside stay in cache. Threads have
+ * a share each, whose different records are then made one by one. */
+static void *share_records(void *records, size_t size, long count, int *index, Records *shared)
+{
+    char *record = records;
+    int shares = sm_team_for(count * SM_LANES);
+    long *kept = sm_alloc((size_t)shares + 1, sizeof *kept), all = 0;
+#pragma omp parallel for schedule(static) num_threads(shares)
+    for (int s = 0; s < shares; s++) {
+        long first = count * s / shares, end = count * (s + 1) / shares;
+        kept[s] = keep_different(record + (size_t)first * size, size, end - first, index + first);
+    }
+    for (int s = 0; s < shares; s++) {
+        long own = kept[s], first = count * s / shares;
+        memmove(record + (size_t)all * size, record + (size_t)first * size, (size_t)own * size);
+        kept[s] = all; /* where they begin */
+        all += own;
+    }
+    int *number = sm_alloc((size_t)all, sizeof *number);
+    long different = keep_different(record, size, all, number);
+#pragma omp parallel for schedule(static) num_threads(shares)
+    for (int s = 0; s < shares; s++)
+        for (long i = count * s / shares; i < count * (s + 1) / shares; i++)
+            index[i] = number[kept[s] + index[i]];
+    *shared = (Records){different, different, different};
+    void *fitted = sm_alloc((size_t)different, size);
+    memcpy(fitted, records, (size_t)different * size);
+    sm_free_all(kept, number, records);
     return fitted;
+}
+
+static void block_constants(Lsm *lsm, long block)
+{
+    ParticleConst *k = &lsm->particle_const[block];
+    lsm->block_const[block] = (int)block;
+    for (int lane = 0; lane < SM_LANES; lane++) {
+        long p =
+            lsm->bodies > 1 ? block % lsm->lattice.count : lsm->particle[block * SM_LANES + lane];
+        if (p < 0) continue;
+        k->weight[lane] = (real)(mass_of(lsm, p) / lsm->members[p]);
+        k->inverse_count[lane] = (real)(1.0 / lsm->members[p]);
+    }
 }
 
 /* m~_i, 1/|R_i| of every block; then M_r and c0_r by the engine's own sums of m~ in place of m~ x.
@@ -249,17 +407,8 @@ static void build_constants(Lsm *lsm)
     lsm->block_const = sm_alloc((size_t)lsm->blocks + 1, sizeof(int)); /* one for the empty block */
     lsm->particle_const = sm_alloc((size_t)lsm->blocks + 1, sizeof(ParticleConst));
     lsm->block_const[lsm->blocks] = (int)lsm->blocks;
-    for (long block = 0; block < lsm->blocks; block++) {
-        ParticleConst *k = &lsm->particle_const[block];
-        lsm->block_const[block] = (int)block;
-        for (int lane = 0; lane < SM_LANES; lane++) {
-            long p = lsm->bodies > 1 ? block % lsm->lattice.count
-                                     : lsm->particle[block * SM_LANES + lane];
-            if (p < 0) continue;
-            k->weight[lane] = (real)(mass_of(lsm, p) / lsm->members[p]);
-            k->inverse_count[lane] = (real)(1.0 / lsm->members[p]);
-        }
-    }
+#pragma omp parallel for schedule(static) num_threads(sm_team_for(lsm->blocks *SM_LANES))
+    for (long block = 0; block < lsm->blocks; block++) block_constants(lsm, block);
     lsm->tile_const = sm_alloc((size_t)lsm->tiles, sizeof(int));
     lsm->region_const = sm_alloc((size_t)lsm->tiles, sizeof(RegionConst));
     for (long tile = 0; tile < lsm->tiles; tile++) lsm->tile_const[tile] = (int)tile;
@@ -273,18 +422,26 @@ static void build_constants(Lsm *lsm)
                                       lsm->tile_const, &lsm->region_records);
 }
 
+static void find_live(Lsm *lsm)
+{
+    lsm->live = sm_alloc((size_t)lsm->tiles, sizeof *lsm->live);
+#pragma omp parallel for schedule(static) num_threads(sm_team_for(lsm->tiles *SM_LANES))
+    for (long tile = 0; tile < lsm->tiles; tile++)
+        for (int lane = 0; lane < SM_LANES; lane++)
+            lsm->live[tile] |=
+                (uint16_t)((lsm->bodies > 1 || lsm->tile_slot[tile * SM_LANES + lane] >= 0)
+                           << lane);
+}
+
 static void build_memory(Lsm *lsm)
 {
     size_t tiles = (size_t)lsm->tiles;
-    lsm->live = sm_alloc(tiles, sizeof *lsm->live);
-    for (size_t s = 0; s < tiles * SM_LANES; s++)
-        lsm->live[s / SM_LANES] |=
-            (uint16_t)((lsm->bodies > 1 || lsm->tile_slot[s] >= 0) << s % SM_LANES);
     lsm->centre = sm_alloc((size_t)(lsm->blocks + 1) * 3 * SM_LANES, sizeof(real));
     lsm->g = NULL;
     lsm->last = sm_alloc(tiles * 6 * SM_LANES, sizeof(short));
     vec identity[9];
     for (int i = 0; i < 9; i++) identity[i] = lanes_set(i % 4 == 0);
+#pragma omp parallel for schedule(static) num_threads(sm_team_for(lsm->tiles *SM_LANES))
     for (long tile = 0; tile < lsm->tiles; tile++)
         last_store(lsm->last + tile * 6 * SM_LANES, identity);
     lsm->sweeps = sm_alloc((size_t)lsm->layers, sizeof(double));
@@ -296,11 +453,15 @@ static void build_memory(Lsm *lsm)
 static void build_regions(Lsm *lsm)
 {
     long n = lsm->lattice.count;
-    int *original = sm_alloc((size_t)n, sizeof *original);
-    bool *listed = sm_alloc((size_t)n, sizeof *listed);
+    bool lists = !corrected(lsm);
+    int *original = sm_alloc(lists ? (size_t)n : 0, sizeof *original);
+    bool *listed = sm_alloc(lists ? (size_t)n : 0, sizeof *listed);
     lsm->members = sm_alloc((size_t)n, sizeof(int));
     lsm_interior_build(&lsm->lattice, lsm->w, &lsm->interior);
-    find_regions(lsm, original, listed);
+    if (lists)
+        list_regions(lsm, original, listed);
+    else
+        correct_regions(lsm);
     for (long p = 0; p < n && lsm->params.strain_limit > 0; p++)
         original[p] = (int)p; /* equal regions may part: each has its own tile lane */
     if (lsm->box)
@@ -313,10 +474,11 @@ static void build_regions(Lsm *lsm)
     free(original);
     free(listed);
     if (lsm->bodies == 1) build_rows(lsm);
-    build_memory(lsm);
+    find_live(lsm);
     lsm_pipeline_split(lsm);
     if (lsm->sums->share) lsm->sums->share(lsm);
     build_constants(lsm);
+    build_memory(lsm);
     if (lsm->sums->open) lsm->sums->open(lsm);
     if (lsm->params.strain_limit > 0) return;
     free(lsm->members);
@@ -377,9 +539,9 @@ Lsm *lsm_build(const SmVoxels *voxels, const SmEngineParams *params)
     lsm->spare = SPARE_LISTS * lsm->side;
     choose_sums(lsm);
     lsm->sums->lay_out(lsm);
+    build_regions(lsm);
     lsm->x = sm_alloc((size_t)(lsm->blocks + 1) * 3 * SM_LANES, sizeof(real));
     lsm->v = sm_alloc((size_t)(lsm->blocks + 1) * 3 * SM_LANES, sizeof(real));
-    build_regions(lsm);
     lsm->params.mass = NULL; /* the caller's, as is what follows */
     lsm->params.instance_pose = NULL;
     return lsm;
@@ -392,7 +554,7 @@ static void free_regions(Lsm *lsm)
     if (lsm->allocator) lsm_allocator_free(lsm->allocator);
     if (lsm->running_lists) lsm_running_lists_free(lsm->running_lists);
     lsm_fixups_free(lsm->fixups);
-    if (lsm->box) free(lsm->block_region);
+    if (lsm->box && !lsm->fixups) free(lsm->block_region);
     for (int t = 0; lsm->group_rows && t < lsm->threads; t++) free(lsm->group_rows[t]);
     const Rows *rows = &lsm->rows;
     sm_free_all(rows->p, rows->bar, rows->plate, rows->transform, rows->plate_down);

@@ -6,6 +6,7 @@
 
 #include "../lib/engine/boundary.h"
 #include "../lib/simd/momentum.h"
+#include "../lib/system/team.h"
 #include "build.h"
 #include "contacts.h"
 #include "fastlsm.h"
@@ -19,24 +20,31 @@ struct SmEngine {
     long count; /* particles of one body */
     long bodies;
     int turn;             /* axis_order.h */
-    int *inner;           /* [count] particle numbers in the lattice as turned */
+    int *inner;           /* [count] particle numbers in the lattice as turned; NULL: the same */
     double (*pose)[3][4]; /* [bodies] */
     SmHandles handles;
     LsmContacts *contacts; /* NULL: nothing collides */
     Momentum *momentum;
     real rounding;            /* of a body at rest (integrate.h) */
-    SmPieces pieces;          /* of its particles, by the lattice's numbers */
+    SmPieces pieces;          /* of its particles, by the lattice's numbers; kept if it can break */
     long divided_at;          /* links broken when its pieces were found */
     long recentred, recentre; /* steps when origins moved last, and are to move next */
     double build_seconds;
 };
 
+/* The number in the lattice of a particle of any instance. */
+static long inner_of(const SmEngine *e, long number)
+{
+    long p = number < e->count ? number : number % e->count;
+    return e->inner ? e->inner[p] : p;
+}
+
 static void rest_position(const SmEngine *e, long number, double x0[3])
 {
     const LsmLattice *l = &e->lsm->lattice;
     double rest[3];
-    for (int d = 0; d < 3; d++)
-        rest[(d + e->turn) % 3] = l->origin[d] + l->cell * l->coord[e->inner[number % e->count]][d];
+    const int *at = l->coord[inner_of(e, number)];
+    for (int d = 0; d < 3; d++) rest[(d + e->turn) % 3] = l->origin[d] + l->cell * at[d];
     sm_pose_apply((const double(*)[4])e->pose[number / e->count], rest, x0);
 }
 
@@ -45,7 +53,7 @@ static long index_of(const SmEngine *e, long number, int d, const double **origi
 {
     long body = number / e->count;
     *origin = e->lsm->origin[body];
-    return place_of(e->lsm, body, e->inner[number % e->count]) + d * SM_LANES;
+    return place_of(e->lsm, body, inner_of(e, number)) + d * SM_LANES;
 }
 
 static real *field_of(const SmEngine *e, SmField field)
@@ -63,6 +71,7 @@ static void engine_get(SmEngine *e, SmField field, double (*values)[3])
     if (field == SM_GOAL && !e->lsm->g) engine_goals(e);
     const real *from = field_of(e, field);
     double to_velocity = e->lsm->cell / e->lsm->params.h;
+#pragma omp parallel for schedule(static) num_threads(sm_team_for(e->bodies * e->count))
     for (long number = 0; number < e->bodies * e->count; number++) {
         if (field == SM_REST) rest_position(e, number, values[number]);
         for (int d = 0; d < 3 && field != SM_REST; d++) {
@@ -74,15 +83,33 @@ static void engine_get(SmEngine *e, SmField field, double (*values)[3])
     }
 }
 
-/* Single precision resolves positions best near zero: each body's origin goes to its middle. */
+/* Of a particle: `values`, or where they are NULL its place at rest. */
+static void value_of(const SmEngine *e, const double (*values)[3], long number, double value[3])
+{
+    if (values)
+        memcpy(value, values[number], 3 * sizeof *value);
+    else
+        rest_position(e, number, value);
+}
+
+/* Single precision resolves positions best near zero: each body's origin goes to its middle. Summed
+ * in the order of particles, whatever the threads. */
 static void centre_on(SmEngine *e, const double (*position)[3])
 {
-    for (long body = 0; body < e->bodies; body++)
-        for (int d = 0; d < 3; d++) {
-            double sum = 0;
-            for (long p = 0; p < e->count; p++) sum += position[body * e->count + p][d];
-            e->lsm->origin[body][d] = sum / (double)e->count;
+    enum { AT_ONCE = 4096 };
+    double(*part)[3] = sm_alloc(AT_ONCE, sizeof *part);
+    for (long body = 0; body < e->bodies; body++) {
+        double sum[3] = {0, 0, 0};
+        for (long first = 0; first < e->count; first += AT_ONCE) {
+            long count = e->count - first < AT_ONCE ? e->count - first : AT_ONCE;
+            for (long i = 0; i < count; i++)
+                value_of(e, position, body * e->count + first + i, part[i]);
+            for (long i = 0; i < count; i++)
+                for (int d = 0; d < 3; d++) sum[d] += part[i][d];
         }
+        for (int d = 0; d < 3; d++) e->lsm->origin[body][d] = sum[d] / (double)e->count;
+    }
+    free(part);
 }
 
 static void shift_obstacles(Lsm *lsm)
@@ -96,21 +123,26 @@ static void shift_obstacles(Lsm *lsm)
         }
 }
 
+/* Positions of NULL are those at rest. */
 static void engine_set(SmEngine *e, SmField field, const double (*values)[3])
 {
-    assert(field == SM_POSITION || field == SM_VELOCITY);
+    assert(field == SM_POSITION || (field == SM_VELOCITY && values));
     momentum_forget(e->momentum);
     if (field == SM_POSITION) centre_on(e, values);
     if (field == SM_POSITION) shift_obstacles(e->lsm);
     real *to = field_of(e, field);
     double from_velocity = e->lsm->params.h / e->lsm->cell;
-    for (long number = 0; number < e->bodies * e->count; number++)
+#pragma omp parallel for schedule(static) num_threads(sm_team_for(e->bodies * e->count))
+    for (long number = 0; number < e->bodies * e->count; number++) {
+        double value[3];
+        value_of(e, values, number, value);
         for (int d = 0; d < 3; d++) {
             const double *origin;
             long at = index_of(e, number, d, &origin);
-            to[at] = (real)(field == SM_VELOCITY ? values[number][d] * from_velocity
-                                                 : (values[number][d] - origin[d]) / e->lsm->cell);
+            to[at] = (real)(field == SM_VELOCITY ? value[d] * from_velocity
+                                                 : (value[d] - origin[d]) / e->lsm->cell);
         }
+    }
 }
 
 /* Where an instance's pose turns it, a tie goes to the rotation of the pose. */
@@ -124,6 +156,7 @@ static void turn_last(SmEngine *e, long body)
     last_store(turned, R);
     long first = one ? 0 : lsm->layer_tile[body / SM_LANES],
          end = one ? lsm->tiles : lsm->layer_tile[body / SM_LANES + 1];
+#pragma omp parallel for schedule(static) num_threads(sm_team_for((end - first) * SM_LANES))
     for (long tile = first; tile < end; tile++)
         for (int i = 0; i < 6 * SM_LANES; i++)
             if (one || i % SM_LANES == body % SM_LANES)
@@ -141,19 +174,42 @@ static void fill_empty_lanes(SmEngine *e)
                     (real)(l->coord[p][d] - l->size[d] / 2);
 }
 
-/* Links of the lattice make pieces of `pieces`, whose members are the particles by the numbers
- * given, or by the lattice's where they are NULL. */
-static void link_pieces(const LsmLattice *l, const int *number, SmPieces *pieces)
+/* Links p with those of its neighbours before it, from number `first` on. What hangs together by
+ * the links of the particle before it along x is left out; where none is broken particles that are
+ * linked lie in a cell, and one of each row is enough. */
+static void link_particle(const Lsm *lsm, const int *number, long first, long p, SmPieces *pieces)
 {
-    for (long p = 0; p < l->count; p++) {
-        const int *c = l->coord[p];
-        uint32_t later = l->link[p] >> (LSM_SELF + 1) << (LSM_SELF + 1);
-        for (; later; later &= later - 1) {
-            int bit = __builtin_ctz(later);
-            long q =
-                lsm_lattice_find(l, c[0] + bit % 3 - 1, c[1] + bit / 3 % 3 - 1, c[2] + bit / 9 - 1);
-            sm_pieces_link(pieces, number ? number[p] : p, number ? number[q] : q);
-        }
+    const LsmLattice *l = &lsm->lattice;
+    const int *c = l->coord[p];
+    bool joins = l->link[p] >> (LSM_SELF - 1) & 1;
+    if (joins) sm_pieces_link(pieces, number ? number[p - 1] : p - 1, number ? number[p] : p);
+    uint32_t news = l->link[p] & (lsm->broken ? ~(uint32_t)0 : 02222) & 07777;
+    if (joins) news &= ~(l->link[p - 1] >> 1 & 03333);
+    for (; news; news &= news - 1) {
+        int bit = __builtin_ctz(news);
+        long q =
+            lsm_lattice_find(l, c[0] + bit % 3 - 1, c[1] + bit / 3 % 3 - 1, c[2] + bit / 9 - 1);
+        if (q >= first) sm_pieces_link(pieces, number ? number[q] : q, number ? number[p] : p);
+    }
+}
+
+/* Links of the lattice make pieces of `pieces`, whose members are the particles by the numbers
+ * given, or by the lattice's where they are NULL. Threads have consecutive planes each, which are
+ * then linked; a piece's first member is the same whatever comes first. */
+static void link_pieces(const Lsm *lsm, const int *number, SmPieces *pieces)
+{
+    const LsmLattice *l = &lsm->lattice;
+    int shares = number ? 1 : sm_team_for(l->count), planes = l->size[2];
+#pragma omp parallel for schedule(static) num_threads(shares)
+    for (int s = 0; s < shares; s++) {
+        long first = lsm_lattice_plane(l, planes * s / shares),
+             end = lsm_lattice_plane(l, planes * (s + 1) / shares);
+        for (long p = first; p < end; p++) link_particle(lsm, number, first, p, pieces);
+    }
+    for (int s = 1; s < shares; s++) {
+        int z = planes * s / shares;
+        for (long p = lsm_lattice_plane(l, z); p < lsm_lattice_plane(l, z + 1); p++)
+            link_particle(lsm, number, 0, p, pieces);
     }
 }
 
@@ -161,11 +217,16 @@ static void link_pieces(const LsmLattice *l, const int *number, SmPieces *pieces
 static void divide_momentum(SmEngine *e)
 {
     Momentum *m = e->momentum;
-    sm_pieces_again(e->count, &e->pieces);
-    link_pieces(&e->lsm->lattice, NULL, &e->pieces);
+    bool again = e->pieces.piece;
+    if (again)
+        sm_pieces_again(e->count, &e->pieces);
+    else
+        sm_pieces_init(e->count, &e->pieces);
+    link_pieces(e->lsm, NULL, &e->pieces);
     sm_pieces_finish(&e->pieces, NULL, e->count);
     for (long slot = 0; slot < (m->abreast ? e->count : m->blocks * SM_LANES); slot++)
         m->label[slot] = -1;
+#pragma omp parallel for schedule(static) num_threads(sm_team_for(e->count))
     for (long p = 0; p < e->count; p++) {
         long slot = e->lsm->slot[p];
         m->mass[slot] = (real)mass_of(e->lsm, p);
@@ -173,6 +234,7 @@ static void divide_momentum(SmEngine *e)
     }
     momentum_divide(m, e->pieces.count);
     e->divided_at = e->lsm->broken;
+    if (!(e->lsm->params.strain_limit > 0)) sm_pieces_free(&e->pieces);
 }
 
 static int longest(const LsmLattice *l)
@@ -190,11 +252,8 @@ static int keep_steps(long blocks)
 
 static void start_at_rest(SmEngine *e)
 {
-    double(*rest)[3] = sm_alloc((size_t)(e->bodies * e->count), sizeof *rest);
-    engine_get(e, SM_REST, rest);
-    for (int d = 0; d < 3; d++) e->lsm->home[d] = rest[0][d];
-    engine_set(e, SM_POSITION, (const double(*)[3])rest);
-    free(rest);
+    rest_position(e, 0, e->lsm->home);
+    engine_set(e, SM_POSITION, NULL);
     for (long body = 0; body < e->bodies; body++) turn_last(e, body);
     fill_empty_lanes(e);
 }
@@ -203,17 +262,18 @@ static void start_at_rest(SmEngine *e)
 static void build_turned(SmEngine *e, const SmVoxels *voxels, const SmEngineParams *params)
 {
     SmEngineParams own = *params;
-    SmVoxels turned;
+    SmVoxels turned = {0};
     double *mass = NULL;
     own.layout = lsm_axes_choose(voxels, params, SM_LANES, &e->turn);
-    lsm_axes_voxels(voxels, e->turn, &turned);
-    e->inner = sm_alloc((size_t)voxels->particle_count, sizeof(int));
-    lsm_axes_numbers(voxels, e->turn, &turned, e->inner);
-    if (params->mass) {
-        own.mass = mass = sm_alloc((size_t)voxels->particle_count, sizeof(double));
-        for (long p = 0; p < voxels->particle_count; p++) mass[e->inner[p]] = params->mass[p];
+    if (e->turn) {
+        lsm_axes_voxels(voxels, e->turn, &turned);
+        e->inner = lsm_axes_numbers(voxels, e->turn, &turned);
     }
-    e->lsm = lsm_build(&turned, &own);
+    if (params->mass && e->turn) {
+        own.mass = mass = sm_alloc((size_t)e->count, sizeof(double));
+        for (long p = 0; p < e->count; p++) mass[e->inner[p]] = params->mass[p];
+    }
+    e->lsm = lsm_build(e->turn ? &turned : voxels, &own);
     sm_voxels_free(&turned);
     free(mass);
 }
@@ -233,6 +293,7 @@ static SmCode engine_create(const SmVoxels *voxels, const SmEngineParams *params
                        "polar method only; use one instance, or the defaults");
     SmCode code = lsm_check(voxels, params, error);
     if (code) return code;
+    int team = sm_team_enter(params->threads);
     SmEngine *e = sm_alloc(1, sizeof *e);
     e->bodies = params->instances > 1 ? params->instances : 1;
     e->count = voxels->particle_count;
@@ -249,8 +310,8 @@ static SmCode engine_create(const SmVoxels *voxels, const SmEngineParams *params
     e->momentum = momentum_build(abreast ? e->count : blocks, e->bodies, abreast,
                                  keep_steps(blocks), lsm->threads);
     e->rounding = rounding_square(longest(&lsm->lattice), lsm->w);
-    sm_pieces_init(e->count, &e->pieces);
     divide_momentum(e);
+    sm_team_leave(team);
     e->build_seconds = sm_now() - start;
     *engine = e;
     return SM_OK;
@@ -420,7 +481,7 @@ static SmCode engine_cut(SmEngine *e, const SmCut *cut, long first, SmError *err
 static int *outer_numbers(const SmEngine *e)
 {
     int *outer = sm_alloc((size_t)e->count, sizeof *outer);
-    for (long p = 0; p < e->count; p++) outer[e->inner[p]] = (int)p;
+    for (long p = 0; p < e->count; p++) outer[inner_of(e, p)] = (int)p;
     return outer;
 }
 
@@ -452,14 +513,14 @@ static void engine_pieces(SmEngine *e, SmPieces *pieces)
 {
     int *outer = outer_numbers(e);
     sm_pieces_init(e->count, pieces);
-    link_pieces(&e->lsm->lattice, outer, pieces);
+    link_pieces(e->lsm, outer, pieces);
     sm_pieces_finish(pieces, NULL, e->count);
     free(outer);
 }
 
 static double kilograms(const SmEngine *e, long number)
 {
-    return e->lsm->mass_unit * mass_of(e->lsm, e->inner[number % e->count]);
+    return e->lsm->mass_unit * mass_of(e->lsm, inner_of(e, number));
 }
 
 static void engine_push(SmEngine *e, long count, const long *particle, const double (*impulse)[3])
@@ -475,7 +536,7 @@ static void engine_push(SmEngine *e, long count, const long *particle, const dou
             dv[d] = impulse[i][d] * scale;
             v[index] += (real)dv[d];
         }
-        long p = e->inner[particle[i] % e->count];
+        long p = inner_of(e, particle[i]);
         momentum_pushed(e->momentum, particle[i] / e->count, e->lsm->slot[p], at, dv,
                         e->lsm->gravity);
     }
@@ -497,7 +558,7 @@ static void fix_held(SmEngine *e)
     for (int i = 0; i < e->handles.count; i++)
         for (long k = 0; k < e->handles.handle[i].count; k++) {
             long number = e->handles.handle[i].particle[k];
-            held[at++] = number / e->count * e->count + e->inner[number % e->count];
+            held[at++] = number / e->count * e->count + inner_of(e, number);
         }
     lsm_contacts_fix(e->contacts, at, held);
     free(held);
@@ -543,7 +604,7 @@ static int compare_numbers(const void *a, const void *b)
 static long engine_region(SmEngine *e, long number, long *member, long room)
 {
     const Lsm *lsm = e->lsm;
-    long centre = e->inner[number % e->count], first = number / e->count * e->count, count = 0;
+    long centre = inner_of(e, number), first = number / e->count * e->count, count = 0;
     const int *c = lsm->lattice.coord[centre];
     uint64_t rows[LSM_MAX_SIDE * LSM_MAX_SIDE];
     long most = lsm_region_rows(&lsm->lattice, &lsm->interior, centre, rows);

@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/system/team.h"
 #include "match.h"
 #include "step.h"
 #include "sums/sums.h"
@@ -99,6 +100,7 @@ void lsm_constants(Lsm *lsm)
     size_t count = (size_t)(lsm->blocks + 1) * 3 * SM_LANES;
     real *x = lsm->x;
     lsm->x = sm_alloc(count, sizeof(real));
+#pragma omp parallel for schedule(static) num_threads(sm_team_for((long)count / 3))
     for (size_t i = 0; i < count; i++) lsm->x[i] = 1;
     lsm_run(lsm, &constants, NULL);
     free(lsm->x);

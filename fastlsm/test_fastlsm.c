@@ -2,6 +2,7 @@
 #include "test_body.h"
 
 #include "../lib/test_frame.h"
+#include "../lib/voxel/sites.h"
 
 /* Largest deviations of goal positions allowed, in cells: what `shapebench tables` allows a row in
  * single precision (coordinates of 30 cells carry 2e-6, a region 12 cells across turns that into
@@ -278,6 +279,59 @@ TEST(test_threads)
         body_arrays(&body);
         random_deformation(&seed, 0.5, 0.2, body.n, (const double(*)[3])body.x0, body.x);
         check_threads(&body, w, wide ? SM_LAYOUT_BLOCKS : (SmLayout)(1 + trial % 2), wide ? 8 : 5);
+        body_free(&body);
+    }
+}
+
+/* Bodies that are large enough for their building to be shared, whatever axis is turned. */
+TEST(test_threads_that_build)
+{
+    const int size[3][3] = {{70, 30, 34}, {33, 80, 28}, {31, 29, 77}};
+    for (int trial = 0; trial < 6; trial++) {
+        unsigned seed = 8;
+        Body body;
+        random_block(&seed, size[trial % 3], 0.5, trial < 3 ? 0.97 : 0.6, &body.voxels);
+        body_arrays(&body);
+        random_deformation(&seed, 0.5, 0.2, body.n, (const double(*)[3])body.x0, body.x);
+        check_threads(&body, 1 + trial % 2, (SmLayout)(1 + trial / 2 % 2), 5);
+        body_free(&body);
+    }
+}
+
+/* What hangs together, from the corners of each cell; bodies of many pieces, and large ones. */
+TEST(test_pieces)
+{
+    for (int trial = 0; trial < 24; trial++) {
+        unsigned seed = (unsigned)trial + 1;
+        Body body;
+        SmPieces made, wanted;
+        if (trial < 20)
+            body_random(&seed, trial % 5, 14, &body);
+        else
+            random_block(&seed, (const int[3]){37, 41, 60}, 1, trial % 2 ? 0.05 : 0.1,
+                         &body.voxels);
+        if (trial >= 20) body_arrays(&body);
+        const SmVoxels *v = &body.voxels;
+        SmSites sites;
+        sm_sites_init(v, &sites);
+        sm_pieces_init(body.n, &wanted);
+        for (long p = 0; p < body.n; p++) {
+            const int *at = sites.coordinate[p];
+            for (int c = 1; c < 8 && sm_voxel_get(v, at[0], at[1], at[2]); c++)
+                sm_pieces_link(
+                    &wanted, p,
+                    sm_sites_find(&sites, at[0] + (c & 1), at[1] + (c >> 1 & 1), at[2] + (c >> 2)));
+        }
+        sm_pieces_finish(&wanted, NULL, body.n);
+        SmEngineParams params = {.w = 1, .h = 0.01, .threads = 1 + trial % 3};
+        SmEngine *engine = create(&fastlsm_engine_f32, &body, params);
+        fastlsm_engine_f32.pieces(engine, &made);
+        assert_int_equal(made.count, wanted.count);
+        assert_memory_equal(made.piece, wanted.piece, (size_t)body.n * sizeof(int));
+        fastlsm_engine_f32.destroy(engine);
+        sm_pieces_free(&made);
+        sm_pieces_free(&wanted);
+        sm_sites_free(&sites);
         body_free(&body);
     }
 }

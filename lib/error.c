@@ -1,5 +1,6 @@
 #include "error.h"
 #include "printable.h"
+#include "system/team.h"
 
 #include <stdint.h>
 #include <stdio.h>
@@ -31,17 +32,33 @@ static void out_of_memory(size_t count, size_t size, const char *file, int line)
     exit(SM_MEMORY);
 }
 
+static const size_t huge_page = (size_t)2 << 20;
+
 /* Large arrays in huge pages, where the system has them: a step streams through more small pages
  * than the processor's translation buffer holds. Only pages that the array fills are asked for. */
 static void *allocate(size_t bytes)
 {
-    const size_t huge = (size_t)2 << 20;
     void *memory;
-    if (posix_memalign(&memory, bytes < huge ? 64 : huge, bytes)) return NULL;
+    if (posix_memalign(&memory, bytes < huge_page ? 64 : huge_page, bytes)) return NULL;
 #ifdef MADV_HUGEPAGE
-    if (bytes >= huge) madvise(memory, bytes / huge * huge, MADV_HUGEPAGE);
+    if (bytes >= huge_page) madvise(memory, bytes / huge_page * huge_page, MADV_HUGEPAGE);
 #endif
     return memory;
+}
+
+/* Each thread touches, and by that places, the part that it will mostly work on: bodies are shared
+ * among threads in such consecutive parts. */
+static void zero(char *memory, size_t bytes)
+{
+    size_t pages = bytes / huge_page;
+    int team = pages < 4 || omp_in_parallel() ? 1 : sm_team(0);
+    if (team == 1) {
+        memset(memory, 0, bytes);
+        return;
+    }
+#pragma omp parallel for schedule(static) num_threads(team)
+    for (size_t page = 0; page < pages; page++) memset(memory + page * huge_page, 0, huge_page);
+    memset(memory + pages * huge_page, 0, bytes - pages * huge_page);
 }
 
 void *sm_alloc_at(size_t count, size_t size, const char *file, int line)
@@ -51,7 +68,8 @@ void *sm_alloc_at(size_t count, size_t size, const char *file, int line)
     if (bytes == 0) bytes = 64;
     void *memory = allocate(bytes);
     if (!memory) out_of_memory(count, size, file, line);
-    return memset(memory, 0, bytes);
+    zero(memory, bytes);
+    return memory;
 }
 
 void *sm_realloc_at(void *pointer, size_t count, size_t size, const char *file, int line)

@@ -32,7 +32,8 @@ SmCode sm_fail(SmError *error, SmCode code, const char *format, ...)
 void sm_write_line(char *text, size_t size, const char *format, va_list arguments);
 
 /* Zeroed memory, aligned to 64 bytes; ends the program with file and line when there is none.
- * Free with free(). A size of 0 gives a valid pointer. */
+ * Free with free(). A size of 0 gives a valid pointer. Large arrays lie in huge pages and are
+ * zeroed by all threads (system/team.h). */
 #define sm_alloc(count, size) sm_alloc_at((count), (size), __FILE__, __LINE__)
 void *sm_alloc_at(size_t count, size_t size, const char *file, int line);
 

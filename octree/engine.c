@@ -189,6 +189,7 @@ static void divide_momentum(SmEngine *e)
     Momentum *m = e->momentum;
     const OctStructure *s = &e->base.structure;
     momentum_room(m, e->oct->blocks);
+    if (e->oct->frame) momentum_frames(m);
     long slots = e->oct->blocks * SM_LANES, pieces;
     for (long slot = 0; slot < slots; slot++) m->label[slot] = -1;
     pieces = oct_frames_groups(&s->tree, &s->regions, m->label);

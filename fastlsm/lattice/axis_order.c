@@ -1,8 +1,8 @@
 #include "axis_order.h"
 
 #include <stdlib.h>
-#include <string.h>
 
+#include "../../lib/system/team.h"
 #include "lattice.h"
 
 void lsm_axes_voxels(const SmVoxels *v, int turn, SmVoxels *turned)
@@ -11,10 +11,13 @@ void lsm_axes_voxels(const SmVoxels *v, int turn, SmVoxels *turned)
     for (int d = 0; d < 3; d++) n[d] = v->size[(d + turn) % 3];
     sm_voxels_init(turned, n[0], n[1], n[2], v->cell);
     for (int d = 0; d < 3; d++) turned->origin[d] = v->origin[(d + turn) % 3];
-    for (int k = 0; k < v->size[2]; k++)
-        for (int j = 0; j < v->size[1]; j++) {
-            const uint64_t *row =
-                v->bits + ((size_t)k * (size_t)v->size[1] + (size_t)j) * (size_t)v->words;
+    /* a thread has rows that turn into rows of its own: those of one z, or of one y */
+    int own = turn == 2 ? 1 : 2;
+#pragma omp parallel for schedule(static) num_threads(sm_team_for(v->cell_count))
+    for (int a = 0; a < v->size[own]; a++)
+        for (int b = 0; b < v->size[3 - own]; b++) {
+            int j = own == 1 ? a : b, k = own == 1 ? b : a;
+            const uint64_t *row = v->bits + sm_voxels_row(v, j, k);
             for (int word = 0; word < v->words; word++)
                 for (uint64_t rest = row[word]; rest; rest &= rest - 1) {
                     int at[3] = {word * 64 + __builtin_ctzll(rest), j, k};
@@ -25,27 +28,41 @@ void lsm_axes_voxels(const SmVoxels *v, int turn, SmVoxels *turned)
     turned->particle_count = v->particle_count;
 }
 
-void lsm_axes_numbers(const SmVoxels *v, int turn, const SmVoxels *turned, int *inner)
+int *lsm_axes_numbers(const SmVoxels *v, int turn, const SmVoxels *turned)
 {
     LsmLattice lattice;
+    int *inner = sm_alloc((size_t)v->particle_count, sizeof *inner);
     int(*coord)[3] = sm_alloc((size_t)v->particle_count, sizeof *coord);
     sm_voxels_particles(v, coord);
     lsm_lattice_sites(turned, &lattice);
+#pragma omp parallel for schedule(static) num_threads(sm_team_for(lattice.count))
     for (long p = 0; p < v->particle_count; p++)
         inner[p] = (int)lsm_lattice_find(&lattice, coord[p][turn], coord[p][(turn + 1) % 3],
                                          coord[p][(turn + 2) % 3]);
     lsm_lattice_free(&lattice);
     free(coord);
+    return inner;
 }
 
-/* Groups of `lanes` cells along x that hold any cell. */
-static long count_groups(const SmVoxels *v, int lanes)
+/* Groups of `lanes` cells along an axis that hold any cell. */
+static long count_groups(const SmVoxels *v, int axis, int lanes)
 {
-    long rows = (long)v->size[1] * v->size[2] * v->words, groups = 0;
     const uint64_t group = ((uint64_t)1 << lanes) - 1;
-    for (long word = 0; word < rows; word++)
-        for (int shift = 0; shift < 64; shift += lanes)
-            groups += (v->bits[word] >> shift & group) != 0;
+    int across = axis == 1 ? 2 : 1, side = axis == 0 ? 1 : lanes; /* of a group of rows */
+    long groups = 0, rows = v->size[across], along = axis == 0 ? v->size[2] : v->size[axis];
+#pragma omp parallel for schedule(static) num_threads(sm_team_for((long)sm_voxels_words(v)))       \
+    reduction(+ : groups)
+    for (long a = 0; a < along; a += side)
+        for (int b = 0; b < rows; b++)
+            for (int word = 0; word < v->words; word++) {
+                uint64_t any = 0;
+                for (int c = (int)a; c < a + side && c < along; c++)
+                    any |= v->bits[sm_voxels_row(v, axis == 1 ? c : b, axis == 1 ? b : c) +
+                                   (size_t)word];
+                if (axis > 0) groups += sm_count_bits(any);
+                for (int shift = 0; axis == 0 && shift < 64; shift += lanes)
+                    groups += (any >> shift & group) != 0;
+            }
     return groups;
 }
 
@@ -54,12 +71,9 @@ static double best_fill(const SmVoxels *v, int lanes, int *turn)
 {
     double best = 0;
     for (int t = 0; t < 3; t++) {
-        SmVoxels turned;
-        lsm_axes_voxels(v, t, &turned);
-        double fill = (double)v->cell_count / (double)(count_groups(&turned, lanes) * lanes);
+        double fill = (double)v->cell_count / (double)(count_groups(v, t, lanes) * lanes);
         if (fill > best) *turn = t;
         if (fill > best) best = fill;
-        sm_voxels_free(&turned);
     }
     return best;
 }

@@ -12,8 +12,9 @@
 /* The lattice with its axes turned; the caller frees it. */
 void lsm_axes_voxels(const SmVoxels *voxels, int turn, SmVoxels *turned);
 
-/* inner[p] = number in the turned lattice of particle p, [particle_count]. O(particles). */
-void lsm_axes_numbers(const SmVoxels *voxels, int turn, const SmVoxels *turned, int *inner);
+/* The number in the turned lattice of each particle, [particle_count]. O(particles); the caller
+ * frees. */
+int *lsm_axes_numbers(const SmVoxels *voxels, int turn, const SmVoxels *turned);
 
 /* The layout to use for `params` (AUTO resolved) and the turn that suits it. `lanes` is SM_LANES.
  */

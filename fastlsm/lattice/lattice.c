@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../lib/system/team.h"
+
 /* Ring offsets linked through each of the eight cells at a particle, for every set of cells. */
 static void link_table(uint32_t table[256])
 {
@@ -21,36 +23,6 @@ static void link_table(uint32_t table[256])
     }
 }
 
-/* Vertex row (y, z) from the four cell rows beside it; returns how many particles it has. */
-static long vertex_row(const SmVoxels *v, int y, int z, int words, uint64_t *row)
-{
-    memset(row, 0, (size_t)words * sizeof *row);
-    for (int corner = 0; corner < 4; corner++) {
-        int j = y - (corner & 1), k = z - (corner >> 1);
-        if (j < 0 || k < 0 || j >= v->size[1] || k >= v->size[2]) continue;
-        const uint64_t *cells =
-            v->bits + ((size_t)k * (size_t)v->size[1] + (size_t)j) * (size_t)v->words;
-        for (int i = 0; i < words; i++) {
-            uint64_t here = i < v->words ? cells[i] : 0, before = i > 0 ? cells[i - 1] : 0;
-            row[i] |= here | here << 1 | before >> 63;
-        }
-    }
-    long count = 0;
-    for (int i = 0; i < words; i++) count += __builtin_popcountll(row[i]);
-    return count;
-}
-
-/* The set of material cells at lattice vertex (x, y, z): bit dx + 2 dy + 4 dz for cell
- * (x - 1 + dx, ...). */
-static int cells_at(const SmVoxels *v, int x, int y, int z)
-{
-    int set = 0;
-    for (int cell = 0; cell < 8; cell++)
-        if (sm_voxel_get(v, x - 1 + (cell & 1), y - 1 + (cell >> 1 & 1), z - 1 + (cell >> 2)))
-            set |= 1 << cell;
-    return set;
-}
-
 void lsm_lattice_sites(const SmVoxels *voxels, LsmLattice *l)
 {
     memset(l, 0, sizeof *l);
@@ -60,18 +32,60 @@ void lsm_lattice_sites(const SmVoxels *voxels, LsmLattice *l)
     }
     l->cell = voxels->cell;
     l->words = (l->size[0] + 63) / 64;
-    size_t rows = (size_t)l->size[1] * (size_t)l->size[2];
-    l->bits = sm_alloc(rows * (size_t)l->words, sizeof *l->bits);
-    l->rank = sm_alloc(rows * (size_t)l->words, sizeof *l->rank);
-    for (size_t row = 0; row < rows; row++) {
-        size_t first = row * (size_t)l->words;
-        int y = (int)(row % (size_t)l->size[1]), z = (int)(row / (size_t)l->size[1]);
-        long before = l->count;
-        l->count += vertex_row(voxels, y, z, l->words, l->bits + first);
-        for (int i = 0; i < l->words; i++) {
-            l->rank[first + (size_t)i] = (uint32_t)before;
-            before += __builtin_popcountll(l->bits[first + (size_t)i]);
-        }
+    l->count = voxels->particle_count;
+    long rows = (long)l->size[1] * l->size[2], before = 0;
+    int team = sm_team_for(rows * l->words);
+    l->bits = sm_alloc((size_t)(rows * l->words), sizeof *l->bits);
+    l->rank = sm_alloc((size_t)(rows * l->words), sizeof *l->rank);
+#pragma omp parallel for schedule(static) num_threads(team)
+    for (long row = 0; row < rows; row++) /* each row's number, for a moment */
+        l->rank[row * l->words] = (uint32_t)sm_voxels_vertices(
+            voxels, (int)(row % l->size[1]), (int)(row / l->size[1]), l->bits + row * l->words);
+    for (long row = 0; row < rows; row++) {
+        long count = l->rank[row * l->words];
+        l->rank[row * l->words] = (uint32_t)before;
+        before += count;
+    }
+    assert(before == l->count);
+#pragma omp parallel for schedule(static) num_threads(team)
+    for (long row = 0; row < rows; row++)
+        for (long w = row * l->words; w + 1 < (row + 1) * l->words; w++)
+            l->rank[w + 1] = l->rank[w] + (uint32_t)sm_count_bits(l->bits[w]);
+}
+
+/* Word w of row (j, k) of cells, and the same a cell on, so that bit x of `at` holds cells x and of
+ * `before` cells x - 1; zero outside the box. */
+static void cell_words(const SmVoxels *v, int w, int j, int k, uint64_t *before, uint64_t *at)
+{
+    *before = *at = 0;
+    if (j < 0 || k < 0 || j >= v->size[1] || k >= v->size[2]) return;
+    const uint64_t *row = v->bits + sm_voxels_row(v, j, k);
+    *at = w < v->words ? row[w] : 0;
+    *before = *at << 1 | (w > 0 ? row[w - 1] >> 63 : 0);
+}
+
+/* Links of the particles of word w of row (y, z), from the set of cells at each: bit dx + 2 dy + 4
+ * dz for cell (x - 1 + dx, ...). */
+static void link_word(const SmVoxels *v, const uint32_t table[256], int w, int y, int z,
+                      LsmLattice *l)
+{
+    uint64_t cells[8], whole = ~(uint64_t)0;
+    size_t word = ((size_t)z * (size_t)l->size[1] + (size_t)y) * (size_t)l->words + (size_t)w;
+    long p = l->rank[word];
+    for (int row = 0; row < 4; row++) {
+        uint64_t *of = cells + 2 * row;
+        cell_words(v, w, y - 1 + (row & 1), z - 1 + (row >> 1), &of[0], &of[1]);
+        whole &= of[0] & of[1];
+    }
+    for (uint64_t rest = l->bits[word]; rest; rest &= rest - 1, p++) {
+        int bit = __builtin_ctzll(rest);
+        unsigned set = 255;
+        for (int cell = 0; cell < 8 && !(whole >> bit & 1); cell++)
+            set ^= (unsigned)(~cells[cell] >> bit & 1) << cell;
+        l->coord[p][0] = w * 64 + bit;
+        l->coord[p][1] = y;
+        l->coord[p][2] = z;
+        l->link[p] = table[set];
     }
 }
 
@@ -82,9 +96,10 @@ void lsm_lattice_build(const SmVoxels *voxels, LsmLattice *l)
     lsm_lattice_sites(voxels, l);
     l->coord = sm_alloc((size_t)l->count, sizeof *l->coord);
     l->link = sm_alloc((size_t)l->count, sizeof *l->link);
-    sm_voxels_particles(voxels, l->coord);
-    for (long p = 0; p < l->count; p++)
-        l->link[p] = table[cells_at(voxels, l->coord[p][0], l->coord[p][1], l->coord[p][2])];
+#pragma omp parallel for schedule(static) num_threads(sm_team_for(l->count))
+    for (int z = 0; z < l->size[2]; z++)
+        for (int y = 0; y < l->size[1]; y++)
+            for (int w = 0; w < l->words; w++) link_word(voxels, table, w, y, z, l);
 }
 
 void lsm_lattice_free(LsmLattice *l)
@@ -99,7 +114,8 @@ void lsm_lattice_free(LsmLattice *l)
 long lsm_lattice_links(const LsmLattice *l)
 {
     long both = 0;
-    for (long p = 0; p < l->count; p++) both += __builtin_popcount(l->link[p]) - 1;
+#pragma omp parallel for schedule(static) num_threads(sm_team_for(l->count)) reduction(+ : both)
+    for (long p = 0; p < l->count; p++) both += sm_count_bits(l->link[p]) - 1;
     return both / 2;
 }
 

@@ -9,6 +9,7 @@
 
 #include <stdint.h>
 
+#include "../../lib/bits.h"
 #include "../../lib/voxel/voxel.h"
 
 enum {
@@ -28,7 +29,8 @@ typedef struct {
     double origin[3], cell;
 } LsmLattice;
 
-/* Two particles are linked when they share a material cell. O(words + particles). */
+/* Two particles are linked when they share a material cell. The voxels must have been counted.
+ * O(words + particles). */
 void lsm_lattice_build(const SmVoxels *voxels, LsmLattice *lattice);
 
 /* Only the bitmap and its ranks: enough to find numbers. */
@@ -49,7 +51,14 @@ static inline long lsm_lattice_find(const LsmLattice *l, int x, int y, int z)
         ((size_t)z * (size_t)l->size[1] + (size_t)y) * (size_t)l->words + (size_t)(x >> 6);
     uint64_t bits = l->bits[word], bit = (uint64_t)1 << (x & 63);
     if (!(bits & bit)) return -1;
-    return (long)l->rank[word] + __builtin_popcountll(bits & (bit - 1));
+    return (long)l->rank[word] + sm_count_bits(bits & (bit - 1));
+}
+
+/* The first particle of plane z, or of the first plane behind it that has one. */
+static inline long lsm_lattice_plane(const LsmLattice *l, int z)
+{
+    return z < l->size[2] ? (long)l->rank[(size_t)z * (size_t)l->size[1] * (size_t)l->words]
+                          : l->count;
 }
 
 /* Bits x - w .. x + w (bit a + w) of a bitmap's row (y, z); zero outside the box. */

@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../lib/system/team.h"
+
 /* Bit set in `out` where the bits at and beside it along x are set in `in`. */
 static void erode_x(const uint64_t *in, uint64_t *out, int words)
 {
@@ -17,8 +19,11 @@ static void erode_x(const uint64_t *in, uint64_t *out, int words)
 static void erode(const LsmLattice *l, uint64_t *bitmap, uint64_t *scratch)
 {
     int ny = l->size[1], nz = l->size[2], words = l->words;
+    int team = sm_team_for((long)ny * nz * words);
+#pragma omp parallel for schedule(static) num_threads(team)
     for (long row = 0; row < (long)ny * nz; row++)
         erode_x(bitmap + row * words, scratch + row * words, words);
+#pragma omp parallel for schedule(static) num_threads(team)
     for (int z = 0; z < nz; z++)
         for (int y = 0; y < ny; y++) {
             uint64_t *out = bitmap + ((long)z * ny + y) * words;
@@ -37,9 +42,22 @@ static int ring_count(const LsmLattice *l, const int c[3])
 {
     int count = 0;
     for (int row = 0; row < 9; row++)
-        count += __builtin_popcountll(
-            lsm_window(l, l->bits, c[0], c[1] + row % 3 - 1, c[2] + row / 3 - 1, 1));
+        count +=
+            sm_count_bits(lsm_window(l, l->bits, c[0], c[1] + row % 3 - 1, c[2] + row / 3 - 1, 1));
     return count;
+}
+
+/* Which particles of a word are linked to all of their ring, and which of these have a whole one.
+ */
+static void find_complete(const LsmLattice *l, size_t word, uint64_t *complete, uint64_t *whole)
+{
+    long p = l->rank[word];
+    for (uint64_t rest = l->bits[word]; rest; rest &= rest - 1, p++) {
+        uint64_t bit = rest & -rest;
+        bool full = l->link[p] == LSM_FULL;
+        if (full) *whole |= bit;
+        if (full || sm_count_bits(l->link[p]) == ring_count(l, l->coord[p])) *complete |= bit;
+    }
 }
 
 void lsm_interior_build(const LsmLattice *l, int w, LsmInterior *interior)
@@ -48,17 +66,11 @@ void lsm_interior_build(const LsmLattice *l, int w, LsmInterior *interior)
     interior->w = w;
     interior->complete = sm_alloc(words, sizeof(uint64_t));
     interior->interior = sm_alloc(words, sizeof(uint64_t));
+#pragma omp parallel for schedule(static) num_threads(sm_team_for(l->count))
+    for (size_t word = 0; word < words; word++)
+        find_complete(l, word, &interior->complete[word], &interior->interior[word]);
+    if (w == 1) return;
     uint64_t *scratch = sm_alloc(words, sizeof(uint64_t));
-    for (long p = 0; p < l->count; p++) {
-        const int *c = l->coord[p];
-        bool full = l->link[p] == LSM_FULL;
-        size_t word = ((size_t)c[2] * (size_t)l->size[1] + (size_t)c[1]) * (size_t)l->words +
-                      (size_t)(c[0] >> 6);
-        uint64_t bit = (uint64_t)1 << (c[0] & 63);
-        if (full) interior->interior[word] |= bit;
-        if (full || __builtin_popcount(l->link[p]) == ring_count(l, c))
-            interior->complete[word] |= bit;
-    }
     for (int step = 1; step < w; step++) erode(l, interior->interior, scratch);
     free(scratch);
 }
@@ -166,7 +178,7 @@ int lsm_region_find(const LsmLattice *l, const LsmInterior *interior, long r, ui
         memcpy(rows, material, (size_t)area * sizeof *rows);
     else
         search(l, interior, centre, material, rows);
-    for (int row = 0; row < area; row++) count += __builtin_popcountll(rows[row]);
+    for (int row = 0; row < area; row++) count += sm_count_bits(rows[row]);
     return count;
 }
 

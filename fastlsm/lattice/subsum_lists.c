@@ -74,6 +74,7 @@ struct LsmListsBuilder {
     int w, side;
     uint64_t full; /* all bits of a bar */
     Pool bars, plates;
+    /* made when the first region is added: */
     int *full_plate;       /* [particles] the whole plate around it, 0: not met yet */
     int *recent_bar;       /* [particles] the last bar around it: neighbours mostly share it */
     uint64_t *recent_bits; /* [particles] its members, 0: none yet */
@@ -181,9 +182,6 @@ LsmListsBuilder *lsm_lists_open(const LsmLattice *l, const int *slot, int w)
     LsmListsBuilder *b = sm_alloc(1, sizeof *b);
     *b = (LsmListsBuilder){.lattice = l, .slot = slot, .w = w, .side = 2 * w + 1};
     b->full = ((uint64_t)1 << b->side) - 1;
-    b->recent_bar = sm_alloc((size_t)l->count, sizeof(int));
-    b->recent_bits = sm_alloc((size_t)l->count, sizeof(uint64_t));
-    b->full_plate = sm_alloc((size_t)l->count, sizeof(int));
     pool_init(&b->bars, b->side + 2);
     pool_init(&b->plates, b->side + 2);
     return b;
@@ -191,6 +189,11 @@ LsmListsBuilder *lsm_lists_open(const LsmLattice *l, const int *slot, int w)
 
 void lsm_lists_add(LsmListsBuilder *b, long p, const uint64_t *rows)
 {
+    if (!b->recent_bar) {
+        b->recent_bar = sm_alloc((size_t)b->lattice->count, sizeof *b->recent_bar);
+        b->recent_bits = sm_alloc((size_t)b->lattice->count, sizeof *b->recent_bits);
+        b->full_plate = sm_alloc((size_t)b->lattice->count, sizeof *b->full_plate);
+    }
     if (b->region_count == b->region_room) {
         b->region_room = 2 * b->region_room + 64;
         b->region = sm_realloc(b->region, (size_t)(b->region_room * b->side), sizeof(int));

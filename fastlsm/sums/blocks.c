@@ -1,147 +1,154 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../lib/system/team.h"
 #include "../pipeline.h"
 #include "blocks.h"
 
-/* Any particle at the lanes of block `column` of row (y, z)? */
-static bool occupied(const LsmLattice *l, int column, int y, int z)
+/* The lanes of block `column` of row (y, z) with a particle, as bits. */
+static uint64_t occupied(const LsmLattice *l, int column, long row)
 {
-    for (int lane = 0; lane < SM_LANES; lane++)
-        if (lsm_lattice_find(l, column * SM_LANES + lane, y, z) >= 0) return true;
-    return false;
+    const uint64_t lanes = ((uint64_t)1 << SM_LANES) - 1;
+    int x = column * SM_LANES;
+    return l->bits[row * l->words + (x >> 6)] >> (x & 63) & lanes;
 }
 
-static void add_block(Lsm *lsm, int column, int y, int z)
+static void fill_block(Lsm *lsm, long block, int column, long row)
 {
-    long block = lsm->blocks++;
+    const LsmLattice *l = &lsm->lattice;
+    int x = column * SM_LANES, *particle = lsm->particle + block * SM_LANES;
+    uint64_t there = occupied(l, column, row),
+             before = l->bits[row * l->words + (x >> 6)] & (((uint64_t)1 << (x & 63)) - 1);
+    long p = l->rank[row * l->words + (x >> 6)] + (long)sm_count_bits(before);
     for (int lane = 0; lane < SM_LANES; lane++) {
-        long p = lsm_lattice_find(&lsm->lattice, column * SM_LANES + lane, y, z);
-        lsm->particle[block * SM_LANES + lane] = (int)p;
-        if (p < 0) continue;
-        lsm->slot[p] = (int)(block * SM_LANES + lane);
+        particle[lane] = there >> lane & 1 ? (int)p : -1;
+        if (there >> lane & 1) lsm->slot[p++] = (int)(block * SM_LANES + lane);
     }
 }
 
 /* The next occupied column of a row from `column` on, or that behind the last. */
-static int next_occupied(const Lsm *lsm, int column, int y, int z)
+static int next_occupied(const Lsm *lsm, int column, long row)
 {
     int width = lsm->box->width;
-    while (column < width && !occupied(&lsm->lattice, column, y, z)) column++;
+    while (column < width && !occupied(&lsm->lattice, column, row)) column++;
     return column;
 }
 
 /* The end of the run of blocks of a row that begins at `column`. Empty blocks are part of it where
  * a window reaches across them. */
-static int run_end(const Lsm *lsm, int column, int y, int z)
+static int run_end(const Lsm *lsm, int column, long row)
 {
     for (;;) {
-        while (column < lsm->box->width && occupied(&lsm->lattice, column, y, z)) column++;
-        int next = next_occupied(lsm, column, y, z);
+        while (column < lsm->box->width && occupied(&lsm->lattice, column, row)) column++;
+        int next = next_occupied(lsm, column, row);
         if (next == lsm->box->width || (next - column) * SM_LANES >= lsm->w) return column;
         column = next;
     }
 }
 
-/* How many blocks the lattice has. */
-static long count_blocks(const Lsm *lsm)
+/* Counts the runs of a row and their blocks, on from *runs and *blocks, and lists them in `run`
+ * unless that is NULL. */
+static void add_row(const Lsm *lsm, long row, int *runs, long *blocks, BlockRun *run)
 {
-    const int *size = lsm->lattice.size, width = lsm->box->width;
+    for (int column = next_occupied(lsm, 0, row), end; column < lsm->box->width;
+         column = next_occupied(lsm, end, row)) {
+        end = run_end(lsm, column, row);
+        if (run)
+            run[*runs] = (BlockRun){.y = (int)(row % lsm->lattice.size[1]),
+                                    .column = column,
+                                    .first = (int)*blocks,
+                                    .count = end - column};
+        *blocks += end - column;
+        ++*runs;
+    }
+}
+
+/* The first run of each row and the first block of each plane; how many there are behind. */
+static void count_blocks(Lsm *lsm, Blocks *box)
+{
+    int ny = lsm->lattice.size[1], planes = lsm->lattice.size[2], runs = 0;
     long blocks = 0;
-    for (long row = 0; row < (long)size[1] * size[2]; row++) {
-        int y = (int)(row % size[1]), z = (int)(row / size[1]);
-        for (int column = next_occupied(lsm, 0, y, z), end; column < width;
-             column = next_occupied(lsm, end, y, z)) {
-            end = run_end(lsm, column, y, z);
-            blocks += end - column;
-        }
-    }
-    return blocks;
-}
-
-static void add_row(Lsm *lsm, Blocks *box, int y, int z, int *runs)
-{
-    for (int column = next_occupied(lsm, 0, y, z); column < box->width;
-         column = next_occupied(lsm, column, y, z)) {
-        int end = run_end(lsm, column, y, z);
-        box->run[(*runs)++] =
-            (BlockRun){.y = y, .column = column, .first = (int)lsm->blocks, .count = end - column};
-        while (column < end) add_block(lsm, column++, y, z);
-    }
-}
-
-static void add_rows(Lsm *lsm, Blocks *box)
-{
-    int runs = 0;
-    for (int z = 0; z < lsm->lattice.size[2]; z++) {
+#pragma omp parallel for schedule(static) num_threads(sm_team_for(lsm->lattice.count))
+    for (int z = 0; z < planes; z++)
+        for (long row = z * (long)ny; row < (z + 1) * (long)ny; row++)
+            add_row(lsm, row, &box->row_run[row], &lsm->layer_block[z], NULL);
+    for (int z = 0; z <= planes; z++) {
+        long own = lsm->layer_block[z];
+        lsm->layer_block[z] = blocks;
+        blocks += own;
         box->plane_run[z] = runs;
-        lsm->layer_block[z] = lsm->blocks;
-        for (int y = 0; y < lsm->lattice.size[1]; y++) {
-            box->row_run[z * (long)lsm->lattice.size[1] + y] = runs;
-            add_row(lsm, box, y, z, &runs);
+        for (long row = z * (long)ny; row < (z + 1) * (long)ny && z < planes; row++) {
+            int own_runs = box->row_run[row];
+            box->row_run[row] = runs;
+            runs += own_runs;
         }
     }
-    box->plane_run[lsm->lattice.size[2]] = runs;
-    lsm->layer_block[lsm->lattice.size[2]] = lsm->blocks;
-    box->row_run[lsm->lattice.size[1] * (long)lsm->lattice.size[2]] = runs;
-    box->run = sm_realloc(box->run, (size_t)runs + 1, sizeof(BlockRun));
-    box->run[runs] = (BlockRun){.first = (int)lsm->blocks};
+    box->row_run[ny * (long)planes] = runs;
+    lsm->blocks = blocks;
 }
 
-/* In the last run that does not begin after it. */
+static void fill_blocks(Lsm *lsm, Blocks *box)
+{
+    int ny = lsm->lattice.size[1], planes = lsm->lattice.size[2];
+#pragma omp parallel for schedule(static) num_threads(sm_team_for(lsm->lattice.count))
+    for (int z = 0; z < planes; z++) {
+        long block = lsm->layer_block[z];
+        for (long row = z * (long)ny; row < (z + 1) * (long)ny; row++) {
+            int runs = box->row_run[row];
+            add_row(lsm, row, &runs, &block, box->run);
+            for (int r = box->row_run[row]; r < runs; r++)
+                for (int i = 0; i < box->run[r].count; i++)
+                    fill_block(lsm, box->run[r].first + i, box->run[r].column + i, row);
+        }
+    }
+    box->run[box->plane_run[planes]] = (BlockRun){.first = (int)lsm->blocks};
+}
+
+/* In the last run of the row that does not begin after it. */
 int lsm_blocks_at(const Lsm *lsm, int column, int y, int z)
 {
     const Blocks *box = lsm->box;
-    if (z < 0 || z >= lsm->lattice.size[2]) return (int)lsm->blocks;
-    int low = box->plane_run[z], high = box->plane_run[z + 1];
+    const int *size = lsm->lattice.size;
+    if (y < 0 || z < 0 || y >= size[1] || z >= size[2]) return (int)lsm->blocks;
+    const int *row = box->row_run + z * (long)size[1] + y;
+    int low = row[0], high = row[1];
     while (low < high) {
         int middle = (low + high) / 2;
-        const BlockRun *run = &box->run[middle];
-        if (run->y < y || (run->y == y && run->column <= column))
+        if (box->run[middle].column <= column)
             low = middle + 1;
         else
             high = middle;
     }
-    if (low == box->plane_run[z]) return (int)lsm->blocks;
+    if (low == row[0]) return (int)lsm->blocks;
     const BlockRun *run = &box->run[low - 1];
     int i = column - run->column;
-    return run->y == y && i < run->count ? run->first + i : (int)lsm->blocks;
+    return i < run->count ? run->first + i : (int)lsm->blocks;
 }
 
-static void find_neighbours(Lsm *lsm, Blocks *box)
+/* Of the blocks of a run: those at their places in other planes, and whether all have one in the
+ * row (or plane) before, whose windows they go on from. */
+static void find_neighbours(const Lsm *lsm, Blocks *box, int z, BlockRun *run)
+{
+    int none = (int)lsm->blocks, w = lsm->w;
+    run->moves_y = box->running && run->y % RESTART;
+    run->moves_z = box->running && z % RESTART;
+    for (int i = 0; i < run->count; i++) {
+        int column = run->column + i, *along = box->along_z + (run->first + i) * (long)lsm->side;
+        for (int c = -w; c <= w; c++) along[c + w] = lsm_blocks_at(lsm, column, run->y, z + c);
+        box->place[run->first + i] = run->y * box->width + column;
+        if (run->moves_y) run->moves_y = lsm_blocks_at(lsm, column, run->y - 1, z) != none;
+        if (run->moves_z) run->moves_z = along[w - 1] != none;
+    }
+}
+
+static void find_all_neighbours(const Lsm *lsm, Blocks *box)
 {
     box->along_z = sm_alloc((size_t)lsm->blocks * (size_t)lsm->side, sizeof(int));
-    int *along = box->along_z;
+    box->place = sm_alloc((size_t)lsm->blocks, sizeof(int));
+#pragma omp parallel for schedule(static) num_threads(sm_team_for(lsm->lattice.count))
     for (int z = 0; z < lsm->lattice.size[2]; z++)
         for (int r = box->plane_run[z]; r < box->plane_run[z + 1]; r++)
-            for (int i = 0; i < box->run[r].count; i++)
-                for (int c = -lsm->w; c <= lsm->w; c++)
-                    *along++ = lsm_blocks_at(lsm, box->run[r].column + i, box->run[r].y, z + c);
-}
-
-/* Do all blocks of a run have one in the row (or plane) before, whose windows they go on from? */
-static void find_moves(const Lsm *lsm, Blocks *box)
-{
-    for (int z = 0; z < lsm->lattice.size[2]; z++)
-        for (int r = box->plane_run[z]; r < box->plane_run[z + 1]; r++) {
-            BlockRun *run = &box->run[r];
-            run->moves_y = box->running && run->y % RESTART;
-            run->moves_z = box->running && z % RESTART;
-            for (int column = run->column; column < run->column + run->count; column++) {
-                if (lsm_blocks_at(lsm, column, run->y - 1, z) == lsm->blocks) run->moves_y = false;
-                if (lsm_blocks_at(lsm, column, run->y, z - 1) == lsm->blocks) run->moves_z = false;
-            }
-        }
-}
-
-static void find_places(const Lsm *lsm, Blocks *box)
-{
-    box->place = sm_alloc((size_t)lsm->blocks, sizeof(int));
-    for (int r = 0; r < box->plane_run[lsm->lattice.size[2]]; r++) {
-        const BlockRun *run = &box->run[r];
-        for (int i = 0; i < run->count; i++)
-            box->place[run->first + i] = run->y * box->width + run->column + i;
-    }
+            find_neighbours(lsm, box, z, &box->run[r]);
 }
 
 /* A bitmap of what sums along z and y may pass through: sites whose blocks exist, but at w = 1
@@ -171,11 +178,13 @@ void lsm_blocks_build(Lsm *lsm)
     int planes = l->size[2];
     const long cache = 2 << 20;
     box->width = (l->size[0] + SM_LANES - 1) / SM_LANES;
-    long blocks = count_blocks(lsm);
-    box->streams = blocks * SM_LANES * (long)(6 * sizeof(real) + 6 * sizeof(short)) > cache;
     box->plane_run = sm_alloc((size_t)planes + 1, sizeof(int));
     box->row_run = sm_alloc((size_t)l->size[1] * (size_t)planes + 1, sizeof(int));
-    box->run = sm_alloc((size_t)blocks + 1, sizeof(BlockRun));
+    lsm->layer_block = sm_alloc((size_t)planes + 1, sizeof(long));
+    count_blocks(lsm, box);
+    long blocks = lsm->blocks;
+    box->streams = blocks * SM_LANES * (long)(6 * sizeof(real) + 6 * sizeof(short)) > cache;
+    box->run = sm_alloc((size_t)box->plane_run[planes] + 1, sizeof(BlockRun));
     lsm->listed = sm_alloc((size_t)blocks, sizeof(bool));
     box->mixed = sm_alloc((size_t)blocks, sizeof(bool));
     lsm->layers = planes;
@@ -184,14 +193,11 @@ void lsm_blocks_build(Lsm *lsm)
     lsm->reach = box->running ? lsm->w + 1 : lsm->w;
     lsm->chapter = box->running ? RESTART : 1;
     lsm->layer_plane = sm_alloc((size_t)planes + 1, sizeof(int));
-    lsm->layer_block = sm_alloc((size_t)planes + 1, sizeof(long));
     lsm->slot = sm_alloc((size_t)l->count, sizeof(int));
     lsm->particle = sm_alloc((size_t)blocks * SM_LANES, sizeof(int));
     for (int z = 0; z <= planes; z++) lsm->layer_plane[z] = z;
-    add_rows(lsm, box);
-    find_neighbours(lsm, box);
-    find_moves(lsm, box);
-    find_places(lsm, box);
+    fill_blocks(lsm, box);
+    find_all_neighbours(lsm, box);
     box->passable = passable_sites(lsm);
 }
 

@@ -21,29 +21,36 @@ typedef struct {
 
 struct FixupsBuilder {
     const Lsm *lsm;
-    long part; /* whose regions are being added */
-    bool any;  /* have been */
-    Way up, down;
+    long begin, part; /* of its share the first, and that whose regions are being added */
+    bool any;         /* have been */
+    Way way[2];       /* up, down; FixupList.first counts from the share's first for now */
 };
 
 enum { ADD = 16 };
 
-static void open_way(const Lsm *lsm, Way *way)
+FixupsBuilder *lsm_fixups_open(const Lsm *lsm, int shares)
 {
-    size_t side = (size_t)lsm->side;
-    way->lanes = sm_alloc(side * side * side, sizeof *way->lanes);
-    way->touched = sm_alloc(side * side, sizeof *way->touched);
-    way->list.first = sm_alloc(PARTS * (size_t)lsm->blocks + 1, sizeof *way->list.first);
-    way->list.clear = sm_alloc((size_t)lsm->blocks, sizeof *way->list.clear);
+    size_t blocks = (size_t)lsm->blocks;
+    FixupsBuilder *builder = sm_alloc((size_t)shares, sizeof *builder);
+    for (int i = 0; i < 2; i++) {
+        FixupList list = {.first = sm_alloc(PARTS * blocks + 1, sizeof *list.first),
+                          .clear = sm_alloc(blocks, sizeof *list.clear)};
+        for (int s = 0; s < shares; s++) builder[s].way[i].list = list;
+    }
+    return builder;
 }
 
-FixupsBuilder *lsm_fixups_open(const Lsm *lsm)
+FixupsBuilder *lsm_fixups_share(const Lsm *lsm, FixupsBuilder *builder, int share, long block)
 {
-    FixupsBuilder *builder = sm_alloc(1, sizeof *builder);
-    builder->lsm = lsm;
-    open_way(lsm, &builder->up);
-    open_way(lsm, &builder->down);
-    return builder;
+    size_t side = (size_t)lsm->side;
+    FixupsBuilder *own = builder + share;
+    own->lsm = lsm;
+    own->begin = own->part = PARTS * block;
+    for (int i = 0; i < 2; i++) {
+        own->way[i].lanes = sm_alloc(side * side * side, sizeof *own->way[i].lanes);
+        own->way[i].touched = sm_alloc(side * side, sizeof *own->way[i].touched);
+    }
+    return own;
 }
 
 static void append(Way *way, Fixup fixup)
@@ -99,13 +106,13 @@ static void finish_part(FixupsBuilder *builder)
     while (builder->any && particle[lane] < 0) lane++;
     for (int d = 0; d < 3 && builder->any; d++)
         corner[d] = lsm->lattice.coord[particle[lane]][d] - (d ? 0 : lane);
-    Way *ways[2] = {&builder->up, &builder->down};
     for (int i = 0; i < 2; i++) {
-        if (builder->any) append_part(lsm, ways[i], corner);
-        ways[i]->list.first[builder->part + 1] = ways[i]->count;
-        ways[i]->list.clear[builder->part / PARTS] |=
-            (uint16_t)(ways[i]->clear << builder->part % PARTS * SM_PART);
-        ways[i]->clear = 0;
+        Way *way = &builder->way[i];
+        if (builder->any) append_part(lsm, way, corner);
+        way->list.first[builder->part + 1] = way->count;
+        way->list.clear[builder->part / PARTS] |=
+            (uint16_t)(way->clear << builder->part % PARTS * SM_PART);
+        way->clear = 0;
     }
     builder->any = false;
     builder->part++;
@@ -117,8 +124,8 @@ static void add_way(const Lsm *lsm, Way *way, int lane, const uint64_t *taken,
 {
     int side = lsm->side, rows = side * side, wrong = 0, count = 0;
     for (int row = 0; row < rows; row++) {
-        wrong += __builtin_popcountll(taken[row] ^ members[row]);
-        count += __builtin_popcountll(members[row]);
+        wrong += sm_count_bits(taken[row] ^ members[row]);
+        count += sm_count_bits(members[row]);
     }
     bool clear = wrong > count;
     way->clear |= (uint32_t)clear << lane;
@@ -140,17 +147,33 @@ void lsm_fixups_add(FixupsBuilder *builder, long p, const uint64_t *rows)
     while (builder->part < lsm->slot[p] / SM_PART) finish_part(builder);
     uint64_t up[LSM_MAX_SIDE * LSM_MAX_SIDE], down[LSM_MAX_SIDE * LSM_MAX_SIDE];
     lsm_blocks_taken(lsm, p, up, down);
-    add_way(lsm, &builder->up, lane, up, rows);
-    add_way(lsm, &builder->down, lane, down, rows);
+    add_way(lsm, &builder->way[0], lane, up, rows);
+    add_way(lsm, &builder->way[1], lane, down, rows);
     builder->any = true;
 }
 
-static FixupList close_way(Way *way)
+void lsm_fixups_finish(FixupsBuilder *own, long block)
 {
-    free(way->lanes);
-    free(way->touched);
-    way->list.of = sm_realloc(way->list.of, (size_t)way->count, sizeof(Fixup));
-    return way->list;
+    while (own->part < PARTS * block) finish_part(own);
+    for (int i = 0; i < 2; i++) sm_free_all(own->way[i].lanes, own->way[i].touched);
+}
+
+/* The list of way `i`: those of all shares, one after the other. */
+static FixupList join_shares(const FixupsBuilder *builder, int shares, int i)
+{
+    FixupList list = builder->way[i].list;
+    long all = 0, at = 0;
+    for (int s = 0; s < shares; s++) all += builder[s].way[i].count;
+    list.of = sm_alloc((size_t)all, sizeof *list.of);
+    for (int s = 0; s < shares; s++) {
+        const Way *way = &builder[s].way[i];
+        if (way->count) memcpy(list.of + at, way->list.of, (size_t)way->count * sizeof *list.of);
+        for (long part = builder[s].begin; part < builder[s].part && at; part++)
+            list.first[part + 1] += at;
+        at += way->count;
+        free(way->list.of);
+    }
+    return list;
 }
 
 /* Rows for the regions that fix-ups read on the way down. */
@@ -167,12 +190,11 @@ static void number_rows(const Lsm *lsm, Fixups *fixups)
     fixups->kept = sm_alloc((size_t)fixups->rows * 12 * SM_LANES, sizeof(real));
 }
 
-void lsm_fixups_close(FixupsBuilder *builder, Lsm *lsm)
+void lsm_fixups_close(FixupsBuilder *builder, int shares, Lsm *lsm)
 {
-    while (builder->part < PARTS * lsm->blocks) finish_part(builder);
     Fixups *fixups = lsm->fixups = sm_alloc(1, sizeof *fixups);
-    fixups->up = close_way(&builder->up);
-    fixups->down = close_way(&builder->down);
+    fixups->up = join_shares(builder, shares, 0);
+    fixups->down = join_shares(builder, shares, 1);
     free(builder);
     number_rows(lsm, fixups);
 }

@@ -15,7 +15,9 @@
 #include "../state.h"
 
 #define lsm_fixups_open      SM_NAME(lsm_fixups_open)
+#define lsm_fixups_share     SM_NAME(lsm_fixups_share)
 #define lsm_fixups_add       SM_NAME(lsm_fixups_add)
+#define lsm_fixups_finish    SM_NAME(lsm_fixups_finish)
 #define lsm_fixups_close     SM_NAME(lsm_fixups_close)
 #define lsm_fixups_mark      SM_NAME(lsm_fixups_mark)
 #define lsm_fixups_free      SM_NAME(lsm_fixups_free)
@@ -49,12 +51,15 @@ struct Fixups {
 
 typedef struct FixupsBuilder FixupsBuilder;
 
-/* To find lsm->fixups: open, add regions in the order of their particles (`rows`: region.h),
- * close, which frees the builder. Regions that are not added need none. O(w^2) a region, and O(w^3)
- * a block. */
-FixupsBuilder *lsm_fixups_open(const Lsm *lsm);
-void lsm_fixups_add(FixupsBuilder *builder, long p, const uint64_t *rows);
-void lsm_fixups_close(FixupsBuilder *builder, Lsm *lsm);
+/* To find lsm->fixups: open for so many shares, which several threads may have; of each share, of
+ * blocks on from those of the share before, add regions in the order of their particles (`rows`:
+ * region.h), and finish it before block `block`; close, which frees the builder. Regions that are
+ * not added need none. O(w^2) a region, and O(w^3) a block. */
+FixupsBuilder *lsm_fixups_open(const Lsm *lsm, int shares);
+FixupsBuilder *lsm_fixups_share(const Lsm *lsm, FixupsBuilder *builder, int share, long block);
+void lsm_fixups_add(FixupsBuilder *own, long p, const uint64_t *rows);
+void lsm_fixups_finish(FixupsBuilder *own, long block);
+void lsm_fixups_close(FixupsBuilder *builder, int shares, Lsm *lsm);
 
 /* Sets `mixed` and `listed` of the blocks (blocks.h) that fix-ups mend and read. */
 void lsm_fixups_mark(const Lsm *lsm);

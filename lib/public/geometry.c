@@ -6,6 +6,7 @@
 
 #include "../mesh/import.h"
 #include "../shapes/shape.h"
+#include "../system/team.h"
 #include "../voxel/voxelise.h"
 #include "inner.h"
 
@@ -190,12 +191,15 @@ static int64_t cells_of(const SmVoxels *v)
     return (int64_t)v->size[0] * v->size[1] * v->size[2];
 }
 
-/* A cell by its place in an array over the lattice, x fastest. */
-static void find_cell(const SmVoxels *v, int64_t at, int cell[3])
+static void take_cells(SmVoxels *v, const uint8_t *filled)
 {
-    cell[0] = (int)(at % v->size[0]);
-    cell[1] = (int)(at / v->size[0] % v->size[1]);
-    cell[2] = (int)(at / v->size[0] / v->size[1]);
+#pragma omp parallel for schedule(static) num_threads(sm_team_for(cells_of(v)))
+    for (int k = 0; k < v->size[2]; k++)
+        for (int j = 0; j < v->size[1]; j++) {
+            const uint8_t *row = filled + ((int64_t)k * v->size[1] + j) * v->size[0];
+            for (int i = 0; i < v->size[0]; i++)
+                if (row[i]) sm_voxel_set(v, i, j, k);
+        }
 }
 
 int sb_voxels_make(const int cells[3], double cell, const double origin[3], const uint8_t *filled,
@@ -207,11 +211,10 @@ int sb_voxels_make(const int cells[3], double cell, const double origin[3], cons
     SmVoxels v;
     sm_voxels_init(&v, cells[0], cells[1], cells[2], cell);
     if (origin) memcpy(v.origin, origin, sizeof v.origin);
-    for (int64_t at = 0; at < cells_of(&v); at++) {
-        int c[3];
-        find_cell(&v, at, c);
-        if (!filled || filled[at]) sm_voxel_set(&v, c[0], c[1], c[2]);
-    }
+    if (filled)
+        take_cells(&v, filled);
+    else
+        sm_voxels_fill(&v);
     sm_voxels_count(&v);
     if (v.cell_count < 1 || v.particle_count > INT_MAX) {
         code = sm_refuse(error, SB_INPUT, "%lld cells of material with %lld particles: 1 to %d",
@@ -251,9 +254,9 @@ int sb_voxels_read_cells(const sb_voxels *voxels, uint8_t *filled, int64_t room,
     code = sm_check_array(filled, room, cells_of(v), "filled", error);
     if (code) return code;
     for (int64_t at = 0; at < cells_of(v); at++) {
-        int c[3];
-        find_cell(v, at, c);
-        filled[at] = sm_voxel_get(v, c[0], c[1], c[2]);
+        int64_t row = at / v->size[0];
+        filled[at] = sm_voxel_get(v, (int)(at % v->size[0]), (int)(row % v->size[1]),
+                                  (int)(row / v->size[1]));
     }
     return sm_done(SM_OK, NULL, error);
 }

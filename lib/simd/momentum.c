@@ -43,18 +43,30 @@ static long all_blocks(const Momentum *m)
     return m->abreast ? m->blocks * ((m->bodies + SM_LANES - 1) / SM_LANES) : m->blocks;
 }
 
+/* Of an array that is there, or not yet: zero then. */
+static void *room(void *array, size_t count, size_t size)
+{
+    return array ? sm_realloc(array, count, size) : sm_alloc(count, size);
+}
+
 void momentum_room(Momentum *m, long blocks)
 {
     m->blocks = blocks;
     size_t slots = (size_t)slots_of(m) + 1;
-    m->mass = sm_realloc(m->mass, slots, sizeof *m->mass);
-    m->label = sm_realloc(m->label, slots, sizeof *m->label);
-    m->frame = sm_realloc(m->frame, slots, sizeof *m->frame);
-    m->run = sm_realloc(m->run, (size_t)all_blocks(m) + 1, sizeof *m->run);
-    memset(m->mass, 0, slots * sizeof *m->mass);
-    memset(m->frame, 0, slots * sizeof *m->frame);
+    bool again = m->mass;
+    m->mass = room(m->mass, slots, sizeof *m->mass);
+    m->label = room(m->label, slots, sizeof *m->label);
+    m->run = room(m->run, (size_t)all_blocks(m) + 1, sizeof *m->run);
+    if (m->frame) m->frame = room(m->frame, slots, sizeof *m->frame);
+    if (again) memset(m->mass, 0, slots * sizeof *m->mass);
+    if (m->frame) memset(m->frame, 0, slots * sizeof *m->frame);
     m->runs = 0;
     momentum_forget(m);
+}
+
+void momentum_frames(Momentum *m)
+{
+    if (!m->frame) m->frame = sm_alloc((size_t)slots_of(m) + 1, sizeof *m->frame);
 }
 
 /* A lane's piece, by its place in m->piece less that of the body, and frame. */
@@ -67,7 +79,8 @@ static void lanes_of(const Momentum *m, long block, Lane lane[SM_LANES])
     for (int l = 0; l < SM_LANES; l++) {
         long slot = m->abreast ? block % m->blocks : block * SM_LANES + l, body = 0;
         if (m->abreast) body = block / m->blocks * SM_LANES + l;
-        lane[l] = (Lane){body < m->bodies ? body * m->pieces + m->label[slot] : -1, m->frame[slot]};
+        lane[l] = (Lane){body < m->bodies ? body * m->pieces + m->label[slot] : -1,
+                         m->frame ? m->frame[slot] : 0};
     }
 }
 
@@ -80,7 +93,7 @@ static void label_empty(Momentum *m)
         if (m->label[slot] >= 0) continue;
         long beside = slot < first ? first : slot - 1;
         m->label[slot] = m->label[beside];
-        m->frame[slot] = m->frame[beside];
+        if (m->frame) m->frame[slot] = m->frame[beside];
     }
 }
 
@@ -91,9 +104,39 @@ static bool all_the_same(const Lane lane[SM_LANES])
     return true;
 }
 
-void momentum_divide(Momentum *m, long pieces)
+/* Are its lanes of the pieces and frames of those of the block before? Abreast labels are of all
+ * lanes, and only the last group of bodies has fewer. */
+static bool like_before(const Momentum *m, long block)
 {
     Lane here[SM_LANES], before[SM_LANES];
+    if (!m->abreast) {
+        const int *label = m->label + block * SM_LANES, *frame = m->frame + block * SM_LANES;
+        size_t size = SM_LANES * sizeof(int);
+        return !memcmp(label, label - SM_LANES, size) &&
+               (!m->frame || !memcmp(frame, frame - SM_LANES, size));
+    }
+    lanes_of(m, block, here);
+    lanes_of(m, block - 1, before);
+    return !memcmp(here, before, sizeof here);
+}
+
+/* What pieces weigh: added up in the order of slots. */
+static void add_masses(Momentum *m)
+{
+    for (long first = 0, end; first < slots_of(m); first = end) {
+        int label = m->label[first];
+        double *mass = &m->piece[label].mass, sum = *mass;
+        for (end = first; end < slots_of(m) && m->label[end] == label; end++)
+            sum += (double)m->mass[end];
+        *mass = sum;
+    }
+    for (long body = 1; body < m->bodies; body++)
+        for (long p = 0; p < m->pieces; p++) m->piece[body * m->pieces + p].mass = m->piece[p].mass;
+}
+
+void momentum_divide(Momentum *m, long pieces)
+{
+    Lane here[SM_LANES];
     label_empty(m);
     m->pieces = pieces;
     if (m->bodies * pieces > m->piece_room) {
@@ -101,16 +144,14 @@ void momentum_divide(Momentum *m, long pieces)
         m->piece = sm_realloc(m->piece, (size_t)m->piece_room, sizeof *m->piece);
     }
     memset(m->piece, 0, (size_t)(m->bodies * pieces) * sizeof *m->piece);
-    for (long slot = 0; slot < slots_of(m); slot++)
-        for (long body = 0; body < m->bodies; body++)
-            m->piece[body * pieces + m->label[slot]].mass += (double)m->mass[slot];
+    add_masses(m);
     m->runs = 0;
     for (long block = 0; block < all_blocks(m); block++) {
-        lanes_of(m, block, here);
-        if (block == 0 || block - m->run[m->runs - 1].first == RUN_BLOCKS ||
-            memcmp(here, before, sizeof here) != 0)
+        bool same = block > 0 && like_before(m, block);
+        if (!same || block - m->run[m->runs - 1].first == RUN_BLOCKS) {
+            lanes_of(m, block, here);
             m->run[m->runs++] = (MomentumRun){block, all_the_same(here) ? here[0].piece : -1};
-        memcpy(before, here, sizeof here);
+        }
     }
     m->run[m->runs].first = all_blocks(m);
     momentum_forget(m);
@@ -409,9 +450,9 @@ void momentum_shift(Momentum *m, long body, const double by[3])
 
 long momentum_bytes(const Momentum *m)
 {
-    return (long)((size_t)slots_of(m) * (sizeof *m->mass + sizeof *m->label + sizeof *m->frame) +
-                  (size_t)m->piece_room * sizeof *m->piece + RUNS_AT_ONCE * sizeof(RunSum) +
-                  ((size_t)all_blocks(m) + 1) * sizeof *m->run);
+    size_t slot = sizeof *m->mass + sizeof *m->label + (m->frame ? sizeof *m->frame : 0);
+    return (long)((size_t)slots_of(m) * slot + (size_t)m->piece_room * sizeof *m->piece +
+                  RUNS_AT_ONCE * sizeof(RunSum) + ((size_t)all_blocks(m) + 1) * sizeof *m->run);
 }
 
 void momentum_free(Momentum *m)

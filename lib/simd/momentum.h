@@ -24,6 +24,7 @@
 #define Momentum        SM_NAME(SmMomentum)
 #define momentum_build  SM_NAME(sm_momentum_build)
 #define momentum_room   SM_NAME(sm_momentum_room)
+#define momentum_frames SM_NAME(sm_momentum_frames)
 #define momentum_divide SM_NAME(sm_momentum_divide)
 #define momentum_forget SM_NAME(sm_momentum_forget)
 #define momentum_begin  SM_NAME(sm_momentum_begin)
@@ -55,7 +56,7 @@ typedef struct {
     /* the caller's to fill in before momentum_divide(): */
     real *mass; /* [slots] 0 in empty ones; abreast, slots are particles */
     int *label; /* [slots] the piece, from 0; -1 in empty slots */
-    int *frame; /* [slots] which origin x counts from; all 0 as built */
+    int *frame; /* [slots] which origin x counts from; NULL, as built: 0 (momentum_frames()) */
     /* its own: */
     long blocks; /* of SM_LANES slots, of one body; abreast: its particles */
     long bodies;
@@ -77,6 +78,9 @@ Momentum *momentum_build(long blocks, long bodies, bool abreast, int every, int 
 
 /* Bodies have as many blocks from now on. Allocates. */
 void momentum_room(Momentum *m, long blocks);
+
+/* Room for frames, all 0, if there is none. Allocates. */
+void momentum_frames(Momentum *m);
 
 /* Takes up masses, labels of `pieces` pieces, and frames. Forgets. Allocates only where there are
  * more pieces than ever before. O(slots). */

@@ -2,6 +2,7 @@
 #include "child.h"
 #include "../error.h"
 #include "clock.h"
+#include "team.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -72,6 +73,7 @@ static void child(SmChildBody body, void *argument, const SmChildLimits *limits,
     close_others(reply);
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_CPU, ceil(limits->seconds) + 1);
+    omp_set_num_threads(1); /* the parent's threads are not here */
     if (SM_CHILD_LIMITS_MEMORY) limit(RLIMIT_AS, inherited + limits->megabytes * megabyte);
     _exit(body(argument, reply));
 }

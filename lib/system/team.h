@@ -18,6 +18,15 @@ static inline int sm_team(int wanted)
     return threads < SM_MOST_THREADS ? threads : SM_MOST_THREADS;
 }
 
+/* OpenMP's number, or as many as have some ten microseconds' work each where an item, a particle or
+ * a word of bits, takes a nanosecond or more. */
+static inline int sm_team_for(long items)
+{
+    const long worth = 1 << 14;
+    int threads = sm_team(0);
+    return threads <= items / worth ? threads : 1 + (int)(items / worth);
+}
+
 /* Makes that the number for what the calling thread calls from here to sm_team_leave(), which takes
  * what this returns: the number before. */
 static inline int sm_team_enter(int wanted)

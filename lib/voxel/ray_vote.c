@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../bits.h"
+
 /* Rays along one axis through the centres of the cells; u and v are the other two axes, and x is
  * u unless it is the axis, so that rays lie in words as rows do. */
 typedef struct {
@@ -98,8 +100,8 @@ static bool trusted(const Rays *r)
 {
     long odd = 0, hit = 0;
     for (size_t w = 0; w < (size_t)r->lattice->size[r->v] * (size_t)r->words; w++) {
-        odd += __builtin_popcountll(r->odd[w]);
-        hit += __builtin_popcountll(r->hit[w]);
+        odd += sm_count_bits(r->odd[w]);
+        hit += sm_count_bits(r->hit[w]);
     }
     return hit > 0 && odd * 4 <= hit;
 }

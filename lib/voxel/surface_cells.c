@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "../system/team.h"
+
 /* How near counts as touching, in cells: more than the rounding of 2^31 cells along an axis. */
 #define TOUCH 1e-6
 
@@ -39,18 +41,52 @@ static inline void touched(double a, double b, double c, int n, int *first, int 
     *last = cell_of(greatest(a, greatest(b, c)) + TOUCH, n);
 }
 
+/* Threads share words; most triangles find their cells set. */
+static inline void set_bits(uint64_t *word, uint64_t bits)
+{
+    if (bits & ~__atomic_load_n(word, __ATOMIC_RELAXED))
+        __atomic_fetch_or(word, bits, __ATOMIC_RELAXED);
+}
+
+static inline void set_bit(SmVoxels *v, long bit)
+{
+    set_bits(&v->bits[bit / 64], (uint64_t)1 << bit % 64);
+}
+
+/* The words of a row and the bits of the first and last of them that hold cells first..last. */
+static inline uint64_t *row_bits(const SmVoxels *v, int first, int last, int j, int k, int *words,
+                                 uint64_t *head, uint64_t *tail)
+{
+    *head = ~(uint64_t)0 << (first & 63);
+    *tail = ~(uint64_t)0 >> (63 - (last & 63));
+    *words = (last >> 6) - (first >> 6);
+    return v->bits + sm_voxels_row(v, j, k) + (first >> 6);
+}
+
 static inline void set_cells(SmVoxels *v, int first, int last, int j, int k)
 {
-    uint64_t *row = v->bits + sm_voxels_row(v, j, k);
-    uint64_t head = ~(uint64_t)0 << (first & 63), tail = ~(uint64_t)0 >> (63 - (last & 63));
-    int from = first >> 6, to = last >> 6;
-    if (from == to) {
-        row[from] |= head & tail;
+    int words;
+    uint64_t head, tail, *row = row_bits(v, first, last, j, k, &words, &head, &tail);
+    if (words == 0) {
+        set_bits(row, head & tail);
         return;
     }
-    row[from] |= head;
-    for (int w = from + 1; w < to; w++) row[w] = ~(uint64_t)0;
-    row[to] |= tail;
+    set_bits(row, head);
+    for (int w = 1; w < words; w++) set_bits(row + w, ~(uint64_t)0);
+    set_bits(row + words, tail);
+}
+
+/* Are all cells of a box that lies in one word along x set? */
+static inline bool all_set(const SmVoxels *v, const int first[3], const int last[3])
+{
+    int words;
+    uint64_t head, tail;
+    for (int k = first[2]; k <= last[2]; k++)
+        for (int j = first[1]; j <= last[1]; j++) {
+            const uint64_t *row = row_bits(v, first[0], last[0], j, k, &words, &head, &tail);
+            if (words > 0 || head & tail & ~__atomic_load_n(row, __ATOMIC_RELAXED)) return false;
+        }
+    return true;
 }
 
 /* The part of the triangle with low <= z <= high, by Sutherland and Hodgman's clipping. */
@@ -144,6 +180,7 @@ static void set_triangle(SmVoxels *v, const double *corner[3], Span *row)
             for (int j = first[1]; j <= last[1]; j++) set_cells(v, first[0], last[0], j, k);
         return;
     }
+    if (all_set(v, first, last)) return;
     Polygon polygon;
     for (int k = first[2]; k <= last[2]; k++) {
         double low = k == first[2] ? -INFINITY : k - TOUCH;
@@ -153,13 +190,54 @@ static void set_triangle(SmVoxels *v, const double *corner[3], Span *row)
     }
 }
 
+/* The only cell that a point touches, by the number of its bit, or -1. */
+static long only_cell(const SmVoxels *v, const double point[3])
+{
+    int cell[3];
+    for (int d = 0; d < 3; d++) {
+        cell[d] = cell_of(point[d] - TOUCH, v->size[d]);
+        if (cell[d] != cell_of(point[d] + TOUCH, v->size[d])) return -1;
+    }
+    return (long)sm_voxels_row(v, cell[1], cell[2]) * 64 + cell[0];
+}
+
+/* Sets the cells of a triangle whose corners lie in the only cells a, b, c, if these are one cell
+ * or two that share a face: most triangles of a fine mesh. */
+static inline bool set_near(SmVoxels *v, const double *corner[3], long a, long b, long c)
+{
+    long low = a < b ? a : b, high = a < b ? b : a, row = v->words * 64L;
+    low = c < low ? c : low;
+    high = c > high ? c : high;
+    long off = high - low, middle = a + b + c - low - high;
+    if (low < 0 || (middle != low && middle != high)) return false;
+    bool beside = off == 0 || (off == 1 && high % 64) || off == row * v->size[1];
+    if (!beside && off == row) { /* unless from the last row of a plane to the next plane's first */
+        int z = cell_of(corner[0][2], v->size[2]);
+        beside = z == cell_of(corner[1][2], v->size[2]) && z == cell_of(corner[2][2], v->size[2]);
+    }
+    if (!beside) return false;
+    set_bit(v, low);
+    set_bit(v, high);
+    return true;
+}
+
 void sm_surface_cells(const SmMesh *mesh, const double (*point)[3], SmVoxels *voxels)
 {
-    Span *row = sm_alloc((size_t)voxels->size[1], sizeof *row);
-    for (long t = 0; t < mesh->triangle_count; t++) {
-        const int *corner = mesh->triangle[t];
-        const double *at[3] = {point[corner[0]], point[corner[1]], point[corner[2]]};
-        set_triangle(voxels, at, row);
+    int team = sm_team_for(mesh->triangle_count);
+    long *only = sm_alloc((size_t)mesh->vertex_count, sizeof *only);
+#pragma omp parallel num_threads(team)
+    {
+        Span *row = sm_alloc((size_t)voxels->size[1], sizeof *row);
+#pragma omp for schedule(static)
+        for (long i = 0; i < mesh->vertex_count; i++) only[i] = only_cell(voxels, point[i]);
+#pragma omp for schedule(dynamic, 4096)
+        for (long t = 0; t < mesh->triangle_count; t++) {
+            const int *corner = mesh->triangle[t];
+            const double *at[3] = {point[corner[0]], point[corner[1]], point[corner[2]]};
+            if (!set_near(voxels, at, only[corner[0]], only[corner[1]], only[corner[2]]))
+                set_triangle(voxels, at, row);
+        }
+        free(row);
     }
-    free(row);
+    free(only);
 }

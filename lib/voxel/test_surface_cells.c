@@ -1,6 +1,7 @@
 /* The cells that triangles touch, against the separating axis test of every cell. */
 #include "surface_cells.h"
 
+#include "../system/team.h"
 #include "../test_frame.h"
 #include "../test_random.h"
 #include "voxelise.h"
@@ -85,4 +86,57 @@ TEST(random_triangles_mark_what_separating_axes_say)
         sm_voxels_free(&v);
         sm_mesh_free(&m);
     }
+}
+
+/* Corners mostly in one cell or two, in lattices of a few: where rows and planes follow each other.
+ */
+TEST(small_triangles_mark_what_separating_axes_say)
+{
+    for (int trial = 0; trial < 150; trial++) {
+        int triangles = 1 + random_int(&seed, 30);
+        SmMesh m = sm_mesh_new(3L * triangles, triangles);
+        double size[3], low = trial % 2 ? 0.05 : 0.4;
+        for (int d = 0; d < 3; d++) size[d] = 1 + random_int(&seed, 3);
+        for (int t = 0; t < triangles; t++) {
+            double middle[3], edge = random_between(&seed, low, 1.5);
+            for (int d = 0; d < 3; d++) middle[d] = random_between(&seed, 0, size[d]);
+            for (int c = 0; c < 3; c++) {
+                for (int d = 0; d < 3; d++) {
+                    double x = middle[d] + random_between(&seed, -edge, edge);
+                    m.position[3 * t + c][d] = fmin(fmax(x, 0), size[d]);
+                }
+                m.triangle[t][c] = 3 * t + c;
+            }
+        }
+        SmVoxels v;
+        sm_voxels_init(&v, (int)size[0], (int)size[1], (int)size[2], 1);
+        sm_surface_cells(&m, (const double(*)[3])m.position, &v);
+        check_surface(&m, &v);
+        sm_voxels_free(&v);
+        sm_mesh_free(&m);
+    }
+}
+
+TEST(threads_mark_the_same_cells)
+{
+    enum { TRIANGLES = 50000, SIZE = 70 };
+    SmMesh m = sm_mesh_new(3L * TRIANGLES, TRIANGLES);
+    for (long i = 0; i < 3L * TRIANGLES; i++) {
+        for (int d = 0; d < 3; d++)
+            m.position[i][d] = i % 3 ? m.position[i / 3 * 3][d] + random_between(&seed, -2, 2)
+                                     : random_between(&seed, 2, SIZE - 2);
+        m.triangle[i / 3][i % 3] = (int)i;
+    }
+    SmVoxels v[2];
+    for (int k = 0; k < 2; k++) {
+        int team = sm_team_enter(k ? 3 : 1);
+        sm_voxels_init(&v[k], SIZE, SIZE, SIZE, 1);
+        sm_surface_cells(&m, (const double(*)[3])m.position, &v[k]);
+        sm_voxels_count(&v[k]);
+        sm_team_leave(team);
+    }
+    assert_int_equal(v[0].particle_count, v[1].particle_count);
+    assert_memory_equal(v[0].bits, v[1].bits, sm_voxels_words(&v[0]) * sizeof *v->bits);
+    for (int k = 0; k < 2; k++) sm_voxels_free(&v[k]);
+    sm_mesh_free(&m);
 }

@@ -6,6 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../bits.h"
+#include "../system/team.h"
+
 void sm_voxels_init(SmVoxels *voxels, int nx, int ny, int nz, double cell)
 {
     assert(nx > 0 && ny > 0 && nz > 0 && cell > 0);
@@ -14,12 +17,19 @@ void sm_voxels_init(SmVoxels *voxels, int nx, int ny, int nz, double cell)
     voxels->bits = sm_alloc(sm_voxels_words(voxels), sizeof *voxels->bits);
 }
 
+void sm_voxels_fill(SmVoxels *voxels)
+{
+    uint64_t last = ~(uint64_t)0 >> (63 - ((voxels->size[0] - 1) & 63));
+    long words = (long)sm_voxels_words(voxels);
+#pragma omp parallel for schedule(static) num_threads(sm_team_for(words))
+    for (long w = 0; w < words; w++)
+        voxels->bits[w] = (w + 1) % voxels->words ? ~(uint64_t)0 : last;
+}
+
 void sm_voxels_block(SmVoxels *voxels, int nx, int ny, int nz, double cell)
 {
     sm_voxels_init(voxels, nx, ny, nz, cell);
-    for (int k = 0; k < nz; k++)
-        for (int j = 0; j < ny; j++)
-            for (int i = 0; i < nx; i++) sm_voxel_set(voxels, i, j, k);
+    sm_voxels_fill(voxels);
     sm_voxels_count(voxels);
 }
 
@@ -38,81 +48,94 @@ void sm_voxels_free(SmVoxels *voxels)
 
 long sm_voxels_cells(const SmVoxels *voxels)
 {
-    long cells = 0;
-    for (size_t w = 0; w < sm_voxels_words(voxels); w++)
-        cells += __builtin_popcountll(voxels->bits[w]);
+    long cells = 0, words = (long)sm_voxels_words(voxels);
+#pragma omp parallel for schedule(static) num_threads(sm_team_for(words)) reduction(+ : cells)
+    for (long w = 0; w < words; w++) cells += sm_count_bits(voxels->bits[w]);
     return cells;
 }
 
-/* The row of cells (j, k), or the row of no material outside the box. */
-static const uint64_t *row_of(const SmVoxels *v, int j, int k, const uint64_t *none)
+/* ORs a row of cells into the row of vertices at their ends: cell i has vertices i and i + 1. */
+static void add_ends(const uint64_t *cells, int words, uint64_t *vertex)
 {
-    if (j < 0 || k < 0 || j >= v->size[1] || k >= v->size[2]) return none;
-    return v->bits + sm_voxels_row(v, j, k);
+    uint64_t last = 0;
+    for (int w = 0; w < words; w++) {
+        vertex[w] |= cells[w] | cells[w] << 1 | last;
+        last = cells[w] >> 63;
+    }
+    if (last) vertex[words] |= last;
 }
 
-/* The four rows of cells that touch the row of lattice vertices (j, k). */
-typedef struct {
-    const uint64_t *row[4];
-    uint64_t last; /* the last cell of the word before */
-} VertexRow;
-
-static VertexRow vertex_row(const SmVoxels *v, int j, int k, const uint64_t *none)
+int sm_voxels_vertices(const SmVoxels *v, int y, int z, uint64_t *vertex)
 {
-    return (VertexRow){{row_of(v, j - 1, k - 1, none), row_of(v, j, k - 1, none),
-                        row_of(v, j - 1, k, none), row_of(v, j, k, none)},
-                       0};
+    int count = 0, words = v->size[0] / 64 + 1;
+    memset(vertex, 0, (size_t)words * sizeof *vertex);
+    for (int k = z - 1; k <= z; k++)
+        for (int j = y - 1; j <= y; j++)
+            if (j >= 0 && k >= 0 && j < v->size[1] && k < v->size[2])
+                add_ends(v->bits + sm_voxels_row(v, j, k), v->words, vertex);
+    for (int w = 0; w < words; w++) count += sm_count_bits(vertex[w]);
+    return count;
 }
 
-/* The vertices of word w, in rising order of w: cell i has vertices i and i + 1. A row of n words
- * of cells has vertices in words 0..n. */
-static inline uint64_t vertex_word(VertexRow *r, int w, int words)
+/* Particles before each plane of lattice vertices, [size[2] + 2]; the caller frees. */
+static long *count_planes(const SmVoxels *voxels)
 {
-    uint64_t cells = 0;
-    if (w < words) cells = r->row[0][w] | r->row[1][w] | r->row[2][w] | r->row[3][w];
-    uint64_t vertices = cells | cells << 1 | r->last;
-    r->last = cells >> 63;
-    return vertices;
+    int planes = voxels->size[2] + 1;
+    long *first = sm_alloc((size_t)planes + 1, sizeof *first);
+#pragma omp parallel num_threads(sm_team_for((long)sm_voxels_words(voxels)))
+    {
+        uint64_t *vertex = sm_alloc((size_t)voxels->size[0] / 64 + 1, sizeof *vertex);
+#pragma omp for schedule(static)
+        for (int k = 0; k < planes; k++)
+            for (int j = 0; j <= voxels->size[1]; j++)
+                first[k + 1] += sm_voxels_vertices(voxels, j, k, vertex);
+        free(vertex);
+    }
+    for (int k = 0; k < planes; k++) first[k + 1] += first[k];
+    return first;
 }
 
 void sm_voxels_count(SmVoxels *voxels)
 {
-    uint64_t *none = sm_alloc((size_t)voxels->words, sizeof *none);
-    long particles = 0;
-    for (int k = 0; k <= voxels->size[2]; k++)
-        for (int j = 0; j <= voxels->size[1]; j++) {
-            VertexRow row = vertex_row(voxels, j, k, none);
-            for (int w = 0; w <= voxels->words; w++)
-                particles += __builtin_popcountll(vertex_word(&row, w, voxels->words));
-        }
-    free(none);
+    long *first = count_planes(voxels);
     voxels->cell_count = sm_voxels_cells(voxels);
-    voxels->particle_count = particles;
+    voxels->particle_count = first[voxels->size[2] + 1];
+    free(first);
+}
+
+/* The particles of one plane; `vertex` is scratch for a row. */
+static void plane_particles(const SmVoxels *voxels, int k, uint64_t *vertex, int (*coordinate)[3])
+{
+    for (int j = 0; j <= voxels->size[1]; j++) {
+        sm_voxels_vertices(voxels, j, k, vertex);
+        for (int w = 0; w <= voxels->size[0] / 64; w++)
+            for (uint64_t rest = vertex[w]; rest; rest &= rest - 1, coordinate++) {
+                (*coordinate)[0] = w * 64 + __builtin_ctzll(rest);
+                (*coordinate)[1] = j;
+                (*coordinate)[2] = k;
+            }
+    }
 }
 
 void sm_voxels_particles(const SmVoxels *voxels, int (*coordinate)[3])
 {
-    uint64_t *none = sm_alloc((size_t)voxels->words, sizeof *none);
-    long p = 0;
-    for (int k = 0; k <= voxels->size[2]; k++)
-        for (int j = 0; j <= voxels->size[1]; j++) {
-            VertexRow row = vertex_row(voxels, j, k, none);
-            for (int w = 0; w <= voxels->words; w++) {
-                uint64_t vertices = vertex_word(&row, w, voxels->words);
-                for (; vertices; vertices &= vertices - 1, p++) {
-                    coordinate[p][0] = w * 64 + __builtin_ctzll(vertices);
-                    coordinate[p][1] = j;
-                    coordinate[p][2] = k;
-                }
-            }
-        }
-    free(none);
+    long *first = count_planes(voxels);
+#pragma omp parallel num_threads(sm_team_for((long)sm_voxels_words(voxels)))
+    {
+        uint64_t *vertex = sm_alloc((size_t)voxels->size[0] / 64 + 1, sizeof *vertex);
+#pragma omp for schedule(static)
+        for (int k = 0; k <= voxels->size[2]; k++)
+            plane_particles(voxels, k, vertex, coordinate + first[k]);
+        free(vertex);
+    }
+    free(first);
 }
 
 void sm_voxels_rest(const SmVoxels *voxels, double (*position)[3])
 {
     int(*at)[3] = sm_alloc((size_t)voxels->particle_count, sizeof *at);
     sm_voxels_particles(voxels, at);
+#pragma omp parallel for schedule(static) num_threads(sm_team_for(voxels->particle_count))
     for (long p = 0; p < voxels->particle_count; p++)
         for (int d = 0; d < 3; d++) position[p][d] = voxels->origin[d] + voxels->cell * at[p][d];
     free(at);
@@ -171,6 +194,7 @@ void sm_voxels_weigh(const SmVoxels *voxels, double density, double *mass)
     double eighth = density * voxels->cell * voxels->cell * voxels->cell / 8;
     int(*at)[3] = sm_alloc((size_t)voxels->particle_count, sizeof *at);
     sm_voxels_particles(voxels, at);
+#pragma omp parallel for schedule(static) num_threads(sm_team_for(voxels->particle_count))
     for (long p = 0; p < voxels->particle_count; p++) {
         mass[p] = 0;
         for (int corner = 0; corner < 8; corner++)

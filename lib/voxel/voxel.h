@@ -25,7 +25,10 @@ typedef struct {
  * sm_voxels_count(). For tests and procedural blocks. */
 void sm_voxels_init(SmVoxels *voxels, int nx, int ny, int nz, double cell);
 
-/* The same with material in every cell, counted. */
+/* Material in every cell, not counted. */
+void sm_voxels_fill(SmVoxels *voxels);
+
+/* A lattice with material in every cell, counted. */
 void sm_voxels_block(SmVoxels *voxels, int nx, int ny, int nz, double cell);
 
 /* The caller frees the copy. */
@@ -37,6 +40,10 @@ long sm_voxels_cells(const SmVoxels *voxels);
 
 /* Fills in cell_count and particle_count from bits. O(words). */
 void sm_voxels_count(SmVoxels *voxels);
+
+/* Row (y, z) of lattice vertices, size[0] / 64 + 1 words: bit x & 63 of word x / 64 is set where
+ * there is a particle at x. Returns how many there are. */
+int sm_voxels_vertices(const SmVoxels *voxels, int y, int z, uint64_t *vertex);
 
 /* Lattice coordinates of every particle in canonical order; `coordinate` is [particle_count][3],
  * the caller's. */

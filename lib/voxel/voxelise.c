@@ -7,6 +7,7 @@
 
 #include "../box.h"
 #include "../system/hash.h"
+#include "../system/team.h"
 #include "flood.h"
 #include "ray_vote.h"
 #include "surface_cells.h"
@@ -142,6 +143,7 @@ static SmCode build(Voxeliser *v, double cell, const double shift[3], SmVoxels *
                        v->name, cell, v->extent[0], v->extent[1], v->extent[2]);
     sm_voxels_init(voxels, at.size[0], at.size[1], at.size[2], cell);
     for (int d = 0; d < 3; d++) voxels->origin[d] = v->low[d] - at.pad[d] * cell;
+#pragma omp parallel for schedule(static) num_threads(sm_team_for(v->mesh->vertex_count))
     for (long i = 0; i < v->mesh->vertex_count; i++)
         for (int d = 0; d < 3; d++)
             v->point[i][d] = (v->mesh->position[i][d] - v->low[d]) / cell + at.pad[d];

@@ -2,6 +2,8 @@
 
 #include <stdlib.h>
 
+#include "../../lib/bits.h"
+
 /* A box within the lattice: cells low .. high - 1. */
 typedef struct {
     int low[3], high[3];
@@ -40,7 +42,7 @@ long oct_mass_cells(const SmVoxels *voxels, const int low[3], int wide)
     for (int k = box.low[2]; k < box.high[2]; k++)
         for (int j = box.low[1]; j < box.high[1]; j++)
             for (int w = box.low[0] / 64; w <= (box.high[0] - 1) / 64; w++)
-                cells += __builtin_popcountll(
+                cells += sm_count_bits(
                     cells_of(voxels, row_number(voxels, j, k), w, box.low[0], box.high[0]));
     return cells;
 }
@@ -49,7 +51,7 @@ long oct_mass_cells(const SmVoxels *voxels, const int low[3], int wide)
 static long cell_number(const OctMass *mass, const SmVoxels *v, int i, int j, int k)
 {
     long row = row_number(v, j, k), number = mass->row_first[row];
-    for (int w = 0; 64 * w < i; w++) number += __builtin_popcountll(cells_of(v, row, w, 0, i));
+    for (int w = 0; 64 * w < i; w++) number += sm_count_bits(cells_of(v, row, w, 0, i));
     return number;
 }
 
@@ -74,7 +76,7 @@ void oct_mass_init(OctMass *mass, const SmVoxels *voxels, const double *vertex, 
     for (long row = 0; row < rows; row++) {
         mass->row_first[row] = cells;
         for (int w = 0; w < voxels->words; w++)
-            cells += __builtin_popcountll(voxels->bits[row * voxels->words + w]);
+            cells += sm_count_bits(voxels->bits[row * voxels->words + w]);
     }
     int(*at)[3] = sm_alloc((size_t)voxels->particle_count, sizeof *at);
     sm_voxels_particles(voxels, at);
@@ -108,7 +110,7 @@ static double material_of(const OctMass *mass, const OctTree *tree, const SmVoxe
         for (int j = box.low[1]; j < box.high[1]; j++) {
             long row = row_number(voxels, j, k), cells = 0;
             for (int w = box.low[0] / 64; w <= (box.high[0] - 1) / 64; w++)
-                cells += __builtin_popcountll(cells_of(voxels, row, w, box.low[0], box.high[0]));
+                cells += sm_count_bits(cells_of(voxels, row, w, box.low[0], box.high[0]));
             if (cells == 0) continue;
             const double *cell = mass->cell + cell_number(mass, voxels, box.low[0], j, k);
             for (long n = 0; n < cells; n++) sum += cell[n];
