@@ -218,10 +218,12 @@ static char *pack(const void *point, size_t *size)
     put(file, counts, sizeof counts, 1);
     for (int r = 0; r < lab->rows; r++) {
         BenchRow row = lab->row[r];
-        row.total = NULL, row.stage = NULL, row.change.time = NULL;
+        row.total = NULL, row.stage = NULL, row.counter = NULL, row.change.time = NULL;
         put(file, &row, sizeof row, 1);
         put(file, lab->row[r].total, sizeof *row.total, row.repeats);
         put(file, lab->row[r].stage, sizeof *row.stage, row.repeats);
+        if (bench_row_counted(&row))
+            put(file, lab->row[r].counter, sizeof *row.counter, row.repeats);
         put(file, lab->row[r].change.time, sizeof *row.change.time, row.change.frames);
     }
     put(file, lab->curve, sizeof *lab->curve, lab->curves);
@@ -258,6 +260,7 @@ static void unpack(const char *bytes, size_t size, void *record)
         size_t repeats = (size_t)row.repeats;
         row.total = take(&bytes, repeats * sizeof *row.total);
         row.stage = take(&bytes, repeats * sizeof *row.stage);
+        if (bench_row_counted(&row)) row.counter = take(&bytes, repeats * sizeof *row.counter);
         if (row.change.frames)
             row.change.time = take(&bytes, (size_t)row.change.frames * sizeof *row.change.time);
         bench_lab_row(&point->lab, &row, point->name, point->steps_per_frame);

@@ -9,7 +9,7 @@
 
 #include "../../lib/system/clock.h"
 #include "../measure/measure.h"
-#include "../regress/counts.h"
+#include "../regress/callgrind.h"
 #include "../regress/regression.h"
 #include "../regress/revision.h"
 #include "../scene/scene.h"
@@ -26,7 +26,8 @@ typedef struct {
     int rounds, repeats;
     double block, threshold; /* ms; a share, NaN: auto */
     BenchRegressionFormat format;
-    bool counts, overwrite;
+    enum { BY_TIME, BY_CYCLES } by;
+    bool counters, overwrite;
 } Options;
 
 static void take_threshold(const struct argp_state *state, const char *text, void *member)
@@ -68,10 +69,15 @@ static const BenchSetting settings[] = {
          "Differences up to X (0.05: 5%) are 'same' (default: auto, as the build differs from "
          "itself)"),
      BENCH_IN(Options, threshold), .take = take_threshold},
-    {BENCH_OPTION(
-         "counts", NULL, 2,
-         "With --revision: also count each scene's instructions, which noise does not touch"),
-     BENCH_IN(Options, counts)},
+    {BENCH_OPTION("by", "time|cycles", 2,
+                  "Judge times, or the cycles of a step, which other work on the machine hardly "
+                  "touches, where info says that they can be read (default: time)"),
+     BENCH_IN(Options, by), BENCH_ONE_OF("time", "cycles")},
+    {BENCH_OPTION("counters", NULL, 2,
+                  "Also compare what was counted in a step: cycles, instructions, misses; where "
+                  "that cannot be read, with --revision, instructions by Valgrind"),
+     BENCH_IN(Options, counters)},
+    {BENCH_OPTION("counts", NULL, 2, "The same"), BENCH_IN(Options, counters)},
     {BENCH_OPTION("format", "FORMAT", 3, "text, markdown, json, junit or gbench (default: text)"),
      BENCH_IN(Options, format), BENCH_CHOICES(bench_regression_formats)},
     {BENCH_OUTPUT_OPTION("FILE", 3, "Write there (default: standard output)"),
@@ -85,8 +91,8 @@ static void check(const struct argp_state *state, void *record)
     const Options *options = record;
     if (!options->baseline == !options->revision)
         bench_usage(state, "compare with what? Say either --baseline FILE.h5 or --revision REV");
-    if (options->baseline && options->counts)
-        bench_usage(state, "--counts: a file has no instruction counts; use --revision");
+    if (options->by == BY_CYCLES && options->format == BENCH_REGRESSION_GBENCH)
+        bench_usage(state, "--by cycles: gbench has times alone");
     if (options->baseline && options->paper)
         bench_usage(state, "--paper: a file has its own scenes; choose of them with --scene");
 }
@@ -103,7 +109,8 @@ static const char help[] =
     "precision and threads that it says.\v"
     "A program of another revision is kept in build/regress, for next time.\n" BENCH_EXIT_CODES
     " Of regress alone: 5 slower; 6 no baseline for a scene, or a baseline of another machine; 7 "
-    "nothing could be judged: all too noisy, or too few samples.";
+    "nothing could be judged: all too noisy, too few samples, or --by cycles where they cannot be "
+    "read.";
 
 /* What one comparison holds. */
 typedef struct {
@@ -198,7 +205,8 @@ static void choose_tasks(Session *session)
 static SmCode choose_rounds(Session *session, SmError *error)
 {
     const Options *options = session->options;
-    int times = session->tasks * BENCH_TIMES, least = bench_compare_rounds(times);
+    int times = session->tasks * (options->by == BY_CYCLES ? 1 : BENCH_TIMES);
+    int least = bench_compare_rounds(times);
     session->rounds = options->rounds ? options->rounds : options->baseline ? 3 : 10;
     if (options->baseline || session->rounds >= least) return SM_OK;
     if (!options->rounds) {
@@ -209,6 +217,14 @@ static SmCode choose_rounds(Session *session, SmError *error)
                    "--rounds %d: so few cannot show a difference in one of %d times: take at least "
                    "--rounds %d, or fewer scenes",
                    options->rounds, times, least);
+}
+
+/* Has one of the file's rows cycles? */
+static bool has_cycles(const Session *session)
+{
+    bool any = false;
+    for (int i = 0; i < session->stored_count; i++) any |= bench_row_counted(&session->stored[i]);
+    return any;
 }
 
 /* As --baseline's help says; the samples that tables takes otherwise are too few and too short. */
@@ -224,6 +240,9 @@ static SmCode load_baseline(Session *session, const BenchMachine *here, SmError 
     SmCode code = bench_store_load(path, &session->stored, &session->stored_count, there, error);
     if (code) return code;
     snprintf(session->found.baseline, sizeof session->found.baseline, "%.200s", path);
+    if (session->options->by == BY_CYCLES && !has_cycles(session))
+        return sm_fail(error, (SmCode)BENCH_EXIT_NO_BASELINE,
+                       "no baseline: %.200s holds no cycles; store one with " STORE, path);
     char differs[160];
     if (bench_machine_same(there, here, sizeof differs, differs)) return SM_OK;
     return sm_fail(error, (SmCode)BENCH_EXIT_NO_BASELINE,
@@ -252,6 +271,40 @@ static void add_stored(Session *session)
                 bench_ab_add(&session->all, BENCH_OLD, 0, &session->stored[i]);
 }
 
+/* Are there counters in all scenes that both builds have? */
+static bool counted(const Session *session)
+{
+    for (int i = 0; i < session->all.count; i++)
+        for (int b = 0; b < BENCH_BUILDS; b++) {
+            const BenchSide *side = session->all.scenes[i].side;
+            if (side[!b].count && side[b].count &&
+                !bench_side_has(&side[b], BENCH_TIMES + BENCH_INSTRUCTIONS))
+                return false;
+        }
+    return true;
+}
+
+/* The rows have them, or Valgrind must count instructions. */
+static SmCode take_counters(Session *session, const BenchAbRunner *rounds, SmError *error)
+{
+    BenchRegression *found = &session->found;
+    SmError why;
+    found->counter = "perf_event";
+    if (counted(session)) return SM_OK;
+    if (session->options->baseline) {
+        bench_regression_remark(found, "no counters: %s or this build has none", found->baseline);
+        return SM_OK;
+    }
+    found->counter = "callgrind";
+    if (!strcmp(found->machine[BENCH_NEW].isa, "avx512"))
+        bench_regression_remark(found, "instructions are of other kernels than avx512's, which "
+                                       "Valgrind does not know");
+    if (bench_callgrind_count(rounds, &session->all, &why) == SM_OK) return SM_OK;
+    if (bench_process_caught()) return sm_fail(error, why.code, "%s", why.text);
+    bench_regression_remark(found, "no instructions: %s", why.text);
+    return SM_OK;
+}
+
 static SmCode measure(Session *session, SmError *error)
 {
     const Options *options = session->options;
@@ -263,17 +316,13 @@ static SmCode measure(Session *session, SmError *error)
         .tasks = session->tasks,
         .rounds = session->rounds,
         .seed = options->common.seed,
+        .by_cycles = options->by == BY_CYCLES,
         .folder = session->folder,
         .progress = &session->progress};
     SmCode code = bench_ab_run(&rounds, &session->all, found->machine, error);
     if (code) return code;
     add_stored(session);
-    if (!options->counts) return SM_OK;
-    SmError why;
-    if (bench_counts_take(&rounds, &session->all, &found->counter, &why) == SM_OK) return SM_OK;
-    if (bench_process_caught()) return sm_fail(error, why.code, "%s", why.text);
-    bench_regression_remark(found, "no instruction counts: %s", why.text);
-    return SM_OK;
+    return options->counters ? take_counters(session, &rounds, error) : SM_OK;
 }
 
 static void print_found(FILE *file, const void *what)
@@ -287,7 +336,7 @@ static SmCode compare(Session *session, SmError *error)
 {
     const Options *options = session->options;
     BenchCompareParams params = {options->revision != NULL, session->rounds, options->threshold,
-                                 options->common.seed};
+                                 options->common.seed, options->by == BY_CYCLES};
     BenchRegression *found = &session->found;
     double start = sm_now();
     SmCode code = measure(session, error);
@@ -307,10 +356,18 @@ static SmCode compare(Session *session, SmError *error)
     return code;
 }
 
+static SmCode check_cycles(SmError *error)
+{
+    char why[160];
+    if (bench_counters_there(sizeof why, why)) return SM_OK;
+    return sm_fail(error, (SmCode)BENCH_EXIT_NOT_JUDGED, "--by cycles: none can be read: %s", why);
+}
+
 static SmCode run(Session *session, const BenchMachine *here, SmError *error)
 {
     const Options *options = session->options;
-    SmCode code = options->baseline ? load_baseline(session, here, error) : SM_OK;
+    SmCode code = options->by == BY_CYCLES ? check_cycles(error) : SM_OK;
+    if (!code && options->baseline) code = load_baseline(session, here, error);
     if (!code) choose_tasks(session);
     if (!code) code = choose_rounds(session, error);
     if (!code && options->revision) code = build_revision(session, error);

@@ -24,7 +24,7 @@ typedef struct {
     int repeats;
     double block;
     BenchFormat format;
-    bool overwrite, explain, columns;
+    bool overwrite, explain, counters, columns;
 } Options;
 
 /* A scene to measure, and the name that stood for it and others, or NULL; and the instruction set
@@ -52,6 +52,10 @@ static const BenchSetting settings[] = {
     {BENCH_OPTION("explain", NULL, 3,
                   "Say below a text table all that stands behind each row, not only a line each"),
      BENCH_IN(Options, explain)},
+    {BENCH_OPTION("counters", NULL, 3,
+                  "Add a table of what the processor counted in a step: cycles, instructions, "
+                  "misses; csv, json and FILE.h5 always have it where it can be read (see info)"),
+     BENCH_IN(Options, counters)},
     {BENCH_OUTPUT_OPTION(
          "FILE.h5", 3,
          "Also store every sample, counts, validity and provenance in HDF5 (default: nothing "
@@ -299,6 +303,13 @@ static SmCode verdict(const BenchRow *rows, int count, SmError *error)
     return SM_OK;
 }
 
+static void warn_of_counters(const Options *options, const char *program)
+{
+    char why[160];
+    if (options->counters && !options->common.quiet && !bench_counters_there(sizeof why, why))
+        fprintf(stderr, "%s: --counters: none can be read: %s\n", program, why);
+}
+
 static SmCode perform(void *record, int argc, char **argv, SmError *error)
 {
     const Options *options = record;
@@ -313,12 +324,16 @@ static SmCode perform(void *record, int argc, char **argv, SmError *error)
     BenchRow *rows = sm_alloc((size_t)chosen.count, sizeof *rows);
     if (!code) code = bench_draft_reserve(options->output, options->overwrite, error);
     if (!code) code = plan_rows(&chosen, rows, error);
+    if (!code) warn_of_counters(options, argv[0]);
     BenchMachine machine;
     bench_command_machine(&options->common, argc, argv, &machine);
-    BenchTable table = {
-        .format = options->format,
-        .explain = options->explain,
-        .report = {.file = stdout, .rows = rows, .count = chosen.count, .machine = &machine}};
+    BenchTable table = {.format = options->format,
+                        .explain = options->explain,
+                        .report = {.file = stdout,
+                                   .rows = rows,
+                                   .count = chosen.count,
+                                   .machine = &machine,
+                                   .counters = options->counters}};
     if (!code) code = measure_all(&chosen, rows, &table, error);
     if (!code && options->output)
         code = bench_store_rows(options->output, rows, chosen.count, &machine, error);

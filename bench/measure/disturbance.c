@@ -32,10 +32,14 @@ static double processor_time(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
+static double used(int threads)
+{
+    return threads == 1 ? processor_time() : -waited();
+}
+
 BenchInstant bench_instant_start(int threads)
 {
-    BenchInstant now = {.threads = threads};
-    now.used = threads == 1 ? processor_time() : -waited();
+    BenchInstant now = {.threads = threads, .used = used(threads)};
     now.wall = sm_now();
     return now;
 }
@@ -43,7 +47,7 @@ BenchInstant bench_instant_start(int threads)
 BenchInstant bench_instant_end(int threads)
 {
     BenchInstant now = {.threads = threads, .wall = sm_now()};
-    now.used = threads == 1 ? processor_time() : -waited();
+    now.used = used(threads);
     return now;
 }
 
@@ -78,14 +82,35 @@ BenchWatch bench_watch(int threads)
     return (BenchWatch){.threads = threads, .began = sm_now(), .stolen = bench_stolen_seconds()};
 }
 
+/* Counters are read outside of the times, as of all programs: of one thread also outside of its
+ * processor time, of which reading takes some; of a team within, because finding out how long it
+ * has waited is work that they would count. */
 void bench_watch_start(BenchWatch *watch)
 {
-    watch->start = bench_instant_start(watch->threads);
+    BenchInstant *start = &watch->start;
+    bool alone = watch->threads == 1;
+    *start = (BenchInstant){.threads = watch->threads};
+    if (watch->counters && alone) bench_counters_read(watch->counters, &watch->first);
+    start->used = used(watch->threads);
+    if (watch->counters && !alone) bench_counters_read(watch->counters, &watch->first);
+    start->wall = sm_now();
+}
+
+static void count(BenchWatch *watch)
+{
+    BenchCounts now;
+    bench_counters_read(watch->counters, &now);
+    watch->counts = (BenchCounts){0};
+    bench_counts_add(&watch->counts, &watch->first, &now);
 }
 
 double bench_watch_stop(BenchWatch *watch)
 {
-    BenchInstant end = bench_instant_end(watch->threads);
+    BenchInstant end = {.threads = watch->threads, .wall = sm_now()};
+    bool alone = watch->threads == 1;
+    if (watch->counters && !alone) count(watch);
+    end.used = used(watch->threads);
+    if (watch->counters && alone) count(watch);
     double seconds = end.wall - watch->start.wall, lost = bench_instant_lost(&watch->start, &end);
     watch->good = lost <= BENCH_LOST_LIMIT;
     watch->seconds += seconds;

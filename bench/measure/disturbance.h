@@ -6,7 +6,7 @@
 #ifndef BENCH_DISTURBANCE_H
 #define BENCH_DISTURBANCE_H
 
-#include <stdbool.h>
+#include "../system/counters.h"
 
 typedef struct {
     double wall, used; /* s: by the wall clock; processor time of the calling thread, or of a team's
@@ -42,6 +42,8 @@ typedef struct {
     double seconds, lost; /* wall clock, of all tries; what others took of it */
     double began, stolen; /* when the watch began, and what the host had taken until then */
     BenchInstant start;
+    const BenchCounters *counters; /* read around every try; NULL, as at first: none are */
+    BenchCounts first, counts;     /* at its start; of the last try */
 } BenchWatch;
 
 BenchWatch bench_watch(int threads);

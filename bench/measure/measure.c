@@ -112,6 +112,10 @@ static void name_row(const BenchScene *scene, const BenchBody *body, const SmEng
                       .input_hash = body->hash,
                       .threads = params->threads,
                       .speedup = NAN,
+                      .cycles = NAN,
+                      .instructions = NAN,
+                      .cache_misses = NAN,
+                      .branch_misses = NAN,
                       .summation_nodes = NAN,
                       .width_cells = NAN,
                       .width_edges = NAN,
@@ -245,6 +249,7 @@ void bench_row_free(BenchRow *row)
 {
     free(row->total);
     free(row->stage);
+    free(row->counter);
     free(row->change.time);
     *row = (BenchRow){0};
 }

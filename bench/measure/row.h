@@ -7,6 +7,7 @@
 
 #include "../../lib/engine/engine.h"
 #include "../check/elastic_check.h"
+#include "../system/counters.h"
 
 enum { BENCH_FRAME_PARTS = 4 };
 
@@ -39,8 +40,9 @@ typedef struct BenchRow {
 #define OCTREE(type, member, ...) BENCH_MEMBER_##type member;
 #define VIEW(...)
 #include "row_quantities.inc"
-    double *total;              /* [repeats] seconds a step, not instrumented */
-    double (*stage)[SM_STAGES]; /* [repeats] seconds a step, instrumented, interleaved */
+    double *total;                     /* [repeats] seconds a step, not instrumented */
+    double (*stage)[SM_STAGES];        /* [repeats] seconds a step, instrumented, interleaved */
+    double (*counter)[BENCH_COUNTERS]; /* [repeats] of a step of `total`; NULL: not counted */
     BenchChangeRow change;
     BenchElasticRow elastic;
 } BenchRow;
@@ -55,6 +57,20 @@ static inline const char *bench_row_mark(const BenchRow *row)
 static inline bool bench_row_frames_busy(const BenchRow *row)
 {
     return row->change.frames > 0 && isnan(row->change.first_ms);
+}
+
+/* The row's member for a counter. */
+static inline double *bench_row_counter(BenchRow *row, BenchCounter counter)
+{
+    double *const of[] = {&row->cycles, &row->instructions, &row->cache_misses,
+                          &row->branch_misses};
+    return of[counter];
+}
+
+/* Does it have `counter`? */
+static inline bool bench_row_counted(const BenchRow *row)
+{
+    return row->cycles > 0;
 }
 
 static inline bool bench_row_timed(const BenchRow *row)

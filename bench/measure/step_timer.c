@@ -15,10 +15,11 @@ typedef struct {
     BenchWatch watch;
 } Blocks;
 
-/* What steps took. */
+/* What steps took, and counted. */
 typedef struct {
     double seconds, stage[SM_STAGES];
     double steps;
+    BenchCounts counts;
 } Sum;
 
 /* What has been timed: all, and what nobody disturbed. */
@@ -26,11 +27,12 @@ typedef struct {
     Sum all, good;
 } Tally;
 
-static void add(Sum *sum, int steps, double seconds, const SmLaps *laps)
+static void add(Sum *sum, int steps, double seconds, const SmLaps *laps, const BenchCounts *counts)
 {
     sum->steps += steps;
     sum->seconds += seconds;
     for (int s = 0; laps && s < SM_STAGES; s++) sum->stage[s] += laps->seconds[s];
+    bench_counts_add(&sum->counts, &(BenchCounts){0}, counts);
 }
 
 /* Times so many steps; false: they were disturbed. After a disturbance (`cold`) caches hold other
@@ -43,10 +45,11 @@ static bool run_chunk(Blocks *blocks, int steps, bool clocks, bool cold, Tally *
     for (int i = 0; i < steps; i++)
         blocks->timed.step(blocks->timed.subject, clocks ? &laps : NULL);
     double seconds = bench_watch_stop(&blocks->watch);
-    bool good = blocks->watch.good;
-    add(&tally->all, steps, seconds, clocks ? &laps : NULL);
-    if (good && !cold) add(&tally->good, steps, seconds, clocks ? &laps : NULL);
-    return good;
+    const BenchWatch *watch = &blocks->watch;
+    add(&tally->all, steps, seconds, clocks ? &laps : NULL, &watch->counts);
+    if (watch->good && !cold)
+        add(&tally->good, steps, seconds, clocks ? &laps : NULL, &watch->counts);
+    return watch->good;
 }
 
 static void run_segment(Blocks *blocks, int steps, bool clocks, Tally *tally)
@@ -62,7 +65,8 @@ static void run_segment(Blocks *blocks, int steps, bool clocks, Tally *tally)
 
 /* One block, and more segments while less than half of it was undisturbed, up to as many again.
  * False: still less than half; then all of it counts. */
-static bool run_block(Blocks *blocks, double *total, double stage[SM_STAGES])
+static bool run_block(Blocks *blocks, double *total, double counter[BENCH_COUNTERS],
+                      double stage[SM_STAGES])
 {
     Tally block = {0};
     double half = 0.5 * blocks->steps * blocks->segments;
@@ -72,6 +76,7 @@ static bool run_block(Blocks *blocks, double *total, double stage[SM_STAGES])
     bool good = block.good.steps >= half;
     const Sum *sum = good ? &block.good : &block.all;
     if (total) *total = sum->seconds / sum->steps;
+    if (counter) bench_counts_each(&sum->counts, sum->steps, counter);
     for (int s = 0; stage && s < SM_STAGES; s++) stage[s] = sum->stage[s] / sum->steps;
     return good;
 }
@@ -95,9 +100,9 @@ static void size_blocks(Blocks *blocks, double block_seconds)
 static bool run_repeat(Blocks *blocks, int r, BenchRow *row)
 {
     bool good = true;
-    if (r % 2) good &= run_block(blocks, NULL, row->stage[r]);
-    good &= run_block(blocks, &row->total[r], NULL);
-    if (r % 2 == 0) good &= run_block(blocks, NULL, row->stage[r]);
+    if (r % 2) good &= run_block(blocks, NULL, NULL, row->stage[r]);
+    good &= run_block(blocks, &row->total[r], row->counter[r], NULL);
+    if (r % 2 == 0) good &= run_block(blocks, NULL, NULL, row->stage[r]);
     return good;
 }
 
@@ -131,6 +136,22 @@ static void summarise(BenchRow *row)
     free(sample);
 }
 
+/* Medians of what was counted; NaN where a sample is not known. */
+static void summarise_counters(BenchRow *row)
+{
+    double *sample = sm_alloc((size_t)row->repeats, sizeof *sample);
+    for (int c = 0; c < BENCH_COUNTERS; c++) {
+        bool known = true;
+        for (int r = 0; r < row->repeats; r++) known &= isfinite(sample[r] = row->counter[r][c]);
+        *bench_row_counter(row, (BenchCounter)c) =
+            known ? bench_quartiles(sample, row->repeats).median : NAN;
+    }
+    free(sample);
+    if (bench_row_counted(row)) return;
+    free(row->counter);
+    row->counter = NULL;
+}
+
 /* A busy row has no times. */
 static void find_busy(const BenchWatch *watch, BenchRow *row)
 {
@@ -152,14 +173,20 @@ void bench_time_steps(const BenchTimed *timed, const BenchMeasureParams *params,
     row->steps = blocks.steps * blocks.segments;
     row->total = sm_alloc((size_t)row->repeats, sizeof *row->total);
     row->stage = sm_alloc((size_t)row->repeats, sizeof *row->stage);
-    run_block(&blocks, NULL, NULL);
+    row->counter = sm_alloc((size_t)row->repeats, sizeof *row->counter);
+    run_block(&blocks, NULL, NULL, NULL);
+    BenchCounters counters; /* of the threads, which are there now */
+    bench_counters_open(params->events ? params->events : bench_processor_events, &counters);
     blocks.watch = bench_watch(params->threads);
+    blocks.watch.counters = counters.threads ? &counters : NULL;
     for (int r = 0; r < row->repeats; r++) {
         do blocks.watch.good = run_repeat(&blocks, r, row);
         while (bench_watch_again(&blocks.watch));
         if (params->progress)
             bench_progress_show(params->progress, row->scene, (r + 1.0) / row->repeats);
     }
+    bench_counters_close(&counters);
     summarise(row);
+    summarise_counters(row);
     find_busy(&blocks.watch, row);
 }

@@ -6,8 +6,9 @@
  * of a millisecond of them at a time. What other programs took some of (disturbance.h) is left out,
  * and a block that is less than half undisturbed is run again; a row of which more than a quarter
  * of the samples stay disturbed, or of whose processors the host took a tenth, is BUSY and has no
- * times. The total is that of the plain blocks; stage times are the shares of the blocks with laps,
- * times the total. */
+ * times. Counters (counters.h) are read around what is timed, and count where the time does; where
+ * nothing can be counted, nothing else changes, and a BUSY row has them. The total is that of the
+ * plain blocks; stage times are the shares of the blocks with laps, times the total. */
 #ifndef BENCH_STEP_TIMER_H
 #define BENCH_STEP_TIMER_H
 
@@ -22,7 +23,8 @@ typedef struct BenchMeasureParams {
     double block_seconds; /* 0: 0.02 */
     int threads;
     unsigned long seed;
-    BenchProgress *progress; /* or NULL */
+    const BenchEvent *events; /* [BENCH_COUNTERS] what is counted; NULL: the processor's */
+    BenchProgress *progress;  /* or NULL */
 } BenchMeasureParams;
 
 /* What is timed: `restore` puts it into the state that every segment starts from. */
@@ -32,8 +34,9 @@ typedef struct {
     void (*step)(void *subject, SmLaps *laps); /* laps without gaps, or NULL */
 } BenchTimed;
 
-/* Fills the row's samples and what is made of them: repeats, steps, total, stage, and all that ends
- * in _ms, instruments_percent, fps, ns_per_particle_step; its `particles` is set. */
+/* Fills the row's samples and what is made of them: repeats, steps, total, stage, counter, and all
+ * that ends in _ms, instruments_percent, fps, ns_per_particle_step, counters that can be read; its
+ * `particles` is set. */
 void bench_time_steps(const BenchTimed *timed, const BenchMeasureParams *params, BenchRow *row);
 
 #endif

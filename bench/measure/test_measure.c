@@ -1,3 +1,4 @@
+#include <linux/perf_event.h>
 #include <time.h>
 
 #include "../../lib/system/clock.h"
@@ -37,6 +38,7 @@ TEST(a_right_engine_is_valid_and_timed)
     if (!row.valid) fail_msg("%s", row.reason);
     assert_int_equal(row.particles, 64);
     assert_int_equal(row.repeats, 5);
+    assert_true(row.counter ? row.cycles > 0 : isnan(row.cycles) && isnan(row.branch_misses));
     if (row.busy) {
         bench_row_free(&row);
         skip_because("others took the processors: the row has no times");
@@ -255,10 +257,19 @@ static void disturbed_step(void *subject, SmLaps *laps)
     sm_lap(laps, SM_POLAR);
 }
 
+/* In place of cycles the ns that a thread runs, which every kernel counts. */
+static const BenchEvent events[BENCH_COUNTERS] = {
+    {PERF_TYPE_SOFTWARE, PERF_COUNT_SW_TASK_CLOCK},
+    {PERF_TYPE_SOFTWARE, PERF_COUNT_SW_TASK_CLOCK},
+    {PERF_TYPE_SOFTWARE, PERF_COUNT_SW_PAGE_FAULTS},
+    {PERF_TYPE_SOFTWARE, PERF_COUNT_SW_CONTEXT_SWITCHES},
+};
+
 /* Returns what its steps said of themselves. */
 static Disturbed measure_disturbed(int every, BenchRow *row)
 {
-    BenchMeasureParams params = {.repeats = 5, .block_seconds = 0.005, .threads = 1};
+    BenchMeasureParams params = {
+        .repeats = 5, .block_seconds = 0.005, .threads = 1, .events = events};
     Disturbed of = {.every = every};
     *row = (BenchRow){.valid = true, .particles = 1};
     bench_time_steps(&(BenchTimed){&of, restore_disturbed, disturbed_step}, &params, row);
@@ -288,4 +299,22 @@ TEST(a_row_without_undisturbed_time_is_busy_and_has_no_times)
     for (int r = 0; r < row.repeats; r++) /* kept as they are */
         assert_true(row.total[r] >= 1e-9 * (COMPUTED + SLEPT));
     bench_row_free(&row);
+}
+
+TEST(counters_are_of_the_timed_steps_busy_or_not)
+{
+    for (int every = 1; every <= 25; every += 24) {
+        BenchRow row;
+        measure_disturbed(every, &row);
+        if (!row.counter) {
+            bench_row_free(&row);
+            skip_because("perf_event_open is refused here");
+        }
+        for (int r = 0; r < row.repeats; r++)
+            if (row.counter[r][0] < COMPUTED || row.counter[r][0] > 10.0 * COMPUTED)
+                fail_msg("%g ns counted in a step", row.counter[r][0]);
+        assert_true(row.cycles >= COMPUTED && row.instructions >= COMPUTED);
+        assert_true(row.cache_misses >= 0 && row.branch_misses >= 0);
+        bench_row_free(&row);
+    }
 }

@@ -81,8 +81,8 @@ static void say_why(const State *state, BenchAbScene *samples)
         snprintf(old->reason, sizeof old->reason, "%s", state->reason);
 }
 
-static SmCode keep(Session *session, const State *state, BenchBuild build, int round,
-                   const char *path, SmError *error)
+static SmCode keep(Session *session, State *state, BenchBuild build, int round, const char *path,
+                   SmError *error)
 {
     BenchRow *rows;
     BenchMachine machine;
@@ -95,6 +95,8 @@ static SmCode keep(Session *session, const State *state, BenchBuild build, int r
     for (int i = 0; i < count; i++) {
         bench_ab_add(session->all, build, round, &rows[i]);
         say_why(state, bench_ab_scene(session->all, rows[i].scene));
+        if (session->runner->by_cycles && rows[i].valid && !bench_row_counted(&rows[i]))
+            state->there[BENCH_OLD] = state->there[BENCH_NEW] = false;
     }
     bench_rows_free(rows, count);
     if (!session->measured[build]) session->machine[build] = machine;

@@ -25,6 +25,7 @@ typedef struct {
     const BenchTask *task;
     int tasks, rounds;
     unsigned long seed;
+    bool by_cycles;     /* leave a scene for which a build has no cycles after that process */
     const char *folder; /* for scratch files */
     BenchProgress *progress;
 } BenchAbRunner;

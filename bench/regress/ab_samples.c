@@ -11,11 +11,27 @@
 
 const char *const bench_build_names[] = {"the baseline", "this build"};
 
-const char *bench_time_name(const BenchAbScene *samples, int time)
+const char *bench_value_name(const BenchAbScene *samples, int value)
 {
-    if (!time) return "total";
+    if (!value) return "total";
+    if (value >= BENCH_TIMES) return bench_counter_names[value - BENCH_TIMES];
     return sm_engine_stage(bench_engine(samples->side[BENCH_NEW].row.engine)->type[0],
-                           (SmStage)(time - 1));
+                           (SmStage)(value - 1));
+}
+
+bool bench_side_has(const BenchSide *side, int value)
+{
+    for (int i = 0; i < side->count; i++)
+        if (!isfinite(side->value[value][i]) || side->value[value][i] <= 0) return false;
+    return side->count > 0;
+}
+
+double bench_side_counter(const BenchSide *side, BenchCounter counter)
+{
+    int value = BENCH_TIMES + (int)counter;
+    if (bench_side_has(side, value))
+        return bench_quantile(side->value[value], side->count, BENCH_LOW);
+    return counter == BENCH_INSTRUCTIONS ? side->instructions : NAN;
 }
 
 BenchAbScene *bench_ab_scene(BenchAbSamples *all, const char *scene)
@@ -38,10 +54,18 @@ static void grow(BenchSide *side, int repeats)
 {
     size_t processes = (size_t)side->count + 1, blocks = (size_t)side->blocks + (size_t)repeats;
     side->round = sm_realloc(side->round, processes, sizeof *side->round);
-    for (int t = 0; t < BENCH_TIMES; t++) {
-        side->time[t] = sm_realloc(side->time[t], processes, sizeof *side->time[t]);
-        side->block[t] = sm_realloc(side->block[t], blocks, sizeof *side->block[t]);
+    for (int v = 0; v < BENCH_VALUES; v++) {
+        side->value[v] = sm_realloc(side->value[v], processes, sizeof *side->value[v]);
+        side->block[v] = sm_realloc(side->block[v], blocks, sizeof *side->block[v]);
     }
+}
+
+/* One of a repeat. */
+static double value_of(const BenchRow *row, int repeat, int value)
+{
+    if (!value) return row->total[repeat];
+    if (value < BENCH_TIMES) return row->stage[repeat][value - 1];
+    return row->counter ? row->counter[repeat][value - BENCH_TIMES] : NAN;
 }
 
 void bench_ab_add(BenchAbSamples *all, BenchBuild build, int round, const BenchRow *row)
@@ -51,6 +75,7 @@ void bench_ab_add(BenchAbSamples *all, BenchBuild build, int round, const BenchR
         side->row = *row;
         side->row.total = NULL;
         side->row.stage = NULL;
+        side->row.counter = NULL;
         side->row.change.time = NULL;
     }
     if (!row->valid && side->valid) {
@@ -58,14 +83,11 @@ void bench_ab_add(BenchAbSamples *all, BenchBuild build, int round, const BenchR
         snprintf(side->reason, sizeof side->reason, "%s", row->reason);
     }
     grow(side, row->repeats);
-    for (int t = 0; t < BENCH_TIMES; t++) {
-        double *block = side->block[t] + side->blocks;
+    for (int v = 0; v < BENCH_VALUES; v++) {
+        double *block = side->block[v] + side->blocks;
         bool there = true;
-        for (int r = 0; r < row->repeats; r++) {
-            block[r] = t ? row->stage[r][t - 1] : row->total[r];
-            there &= isfinite(block[r]);
-        }
-        side->time[t][side->count] = there ? bench_quantile(block, row->repeats, 0.02) : NAN;
+        for (int r = 0; r < row->repeats; r++) there &= isfinite(block[r] = value_of(row, r, v));
+        side->value[v][side->count] = there ? bench_quantile(block, row->repeats, 0.02) : NAN;
     }
     side->blocks += row->repeats;
     side->round[side->count++] = round;
@@ -77,9 +99,9 @@ void bench_ab_free(BenchAbSamples *all)
         for (int b = 0; b < BENCH_BUILDS; b++) {
             BenchSide *side = &all->scenes[i].side[b];
             free(side->round);
-            for (int t = 0; t < BENCH_TIMES; t++) {
-                free(side->time[t]);
-                free(side->block[t]);
+            for (int v = 0; v < BENCH_VALUES; v++) {
+                free(side->value[v]);
+                free(side->block[v]);
             }
         }
     free(all->scenes);

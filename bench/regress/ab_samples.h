@@ -14,20 +14,21 @@ typedef enum { BENCH_OLD, BENCH_NEW, BENCH_BUILDS } BenchBuild;
 
 extern const char *const bench_build_names[]; /* "the baseline", "this build" */
 
-/* The times of a step: the total, then each stage. */
-enum { BENCH_TIMES = 1 + SM_STAGES };
+/* What is compared of a step: its times, the total and then each stage, and behind them what was
+ * counted while the total was timed. */
+enum { BENCH_TIMES = 1 + SM_STAGES, BENCH_VALUES = BENCH_TIMES + BENCH_COUNTERS };
 
 /* A scene on one build. */
 typedef struct {
-    BenchRow row;               /* of the first process, without samples */
-    int count;                  /* processes; 0: not measured */
-    int *round;                 /* [count] which round the process was of */
-    double *time[BENCH_TIMES];  /* [count] s a step; NaN or 0: the build has no such stage */
-    double *block[BENCH_TIMES]; /* [blocks] every repeat of every process, s a step */
+    BenchRow row;                /* of the first process, without samples */
+    int count;                   /* processes; 0: not measured */
+    int *round;                  /* [count] which round the process was of */
+    double *value[BENCH_VALUES]; /* [count] s or counts a step; NaN or 0: the build has no such */
+    double *block[BENCH_VALUES]; /* [blocks] every repeat of every process, likewise */
     int blocks;
     bool valid;          /* all its processes' checks passed */
     char reason[224];    /* why not valid, or why not measured */
-    double instructions; /* a step; NaN: not counted */
+    double instructions; /* a step, by Valgrind; NaN: not counted */
 } BenchSide;
 
 typedef struct {
@@ -35,8 +36,15 @@ typedef struct {
     BenchSide side[BENCH_BUILDS];
 } BenchAbScene;
 
-/* "total", or what the scene's engine calls the stage: "fast_sum", ... */
-const char *bench_time_name(const BenchAbScene *samples, int time);
+/* "total", what the scene's engine calls the stage ("fast_sum"), or "cycles", ... */
+const char *bench_value_name(const BenchAbScene *samples, int value);
+
+/* Does the build have this value: finite and above 0 in every process? */
+bool bench_side_has(const BenchSide *side, int value);
+
+/* The lower quartile over processes of what was counted a step; instructions else by Valgrind; NaN:
+ * not counted. */
+double bench_side_counter(const BenchSide *side, BenchCounter counter);
 
 /* Of all scenes. Begins zeroed. */
 typedef struct {

@@ -21,12 +21,15 @@ const char *bench_comparison_name(BenchComparisonVerdict verdict)
     return names[verdict];
 }
 
-/* Does the build have this time: finite and above 0 in every process? */
-static bool has_time(const BenchSide *side, int time)
+/* The first of the values that are judged, and how many there are. */
+static int first_value(const BenchCompareParams *params)
 {
-    for (int i = 0; i < side->count; i++)
-        if (!isfinite(side->time[time][i]) || side->time[time][i] <= 0) return false;
-    return side->count > 0;
+    return params->by_cycles ? BENCH_TIMES + BENCH_CYCLES : 0;
+}
+
+static int values(const BenchCompareParams *params)
+{
+    return params->by_cycles ? 1 : BENCH_TIMES;
 }
 
 /* Where the builds did other work: what, and both. What an old file does not state (row_store.h) is
@@ -68,7 +71,7 @@ static bool same_work(const BenchRow *a, const BenchRow *b, size_t size, char *r
 }
 
 /* Why nothing of this scene can be compared, if so. */
-static bool comparable(BenchComparison *result)
+static bool comparable(BenchComparison *result, const BenchCompareParams *params)
 {
     const BenchSide *side = result->samples->side;
     for (int b = BENCH_BUILDS - 1; b >= 0; b--) {
@@ -79,6 +82,11 @@ static bool comparable(BenchComparison *result)
         return false;
     }
     result->verdict = BENCH_NO_BASELINE;
+    for (int i = 0; i < BENCH_BUILDS && params->by_cycles; i++) {
+        if (!side[i].count || bench_side_has(&side[i], first_value(params))) continue;
+        snprintf(result->reason, sizeof result->reason, "%s has no cycles", bench_build_names[i]);
+        return false;
+    }
     if (side[BENCH_OLD].count == 0 || side[BENCH_NEW].count == 0) {
         int missing = side[BENCH_OLD].count ? BENCH_NEW : BENCH_OLD;
         snprintf(result->reason, sizeof result->reason, "%s has no such scene%s%s",
@@ -90,9 +98,9 @@ static bool comparable(BenchComparison *result)
                      result->reason);
 }
 
-static BenchTimes times_of(const BenchSide *side, int time)
+static BenchTimes times_of(const BenchSide *side, int value)
 {
-    return (BenchTimes){side->time[time], side->round, side->count};
+    return (BenchTimes){side->value[value], side->round, side->count};
 }
 
 static void compare_interleaved(const BenchTimes *old, const BenchTimes *new,
@@ -117,8 +125,8 @@ static void compare_apart(const BenchTimes *old, const BenchTimes *new, int comp
     const BenchSide *side = result->samples->side;
     const BenchSide *left = &side[BENCH_OLD], *right = &side[BENCH_NEW];
     BenchRatio ratio = bench_ratio_apart(old, new, params->seed);
-    result->p = bench_mann_whitney(left->block[result->time], left->blocks,
-                                   right->block[result->time], right->blocks);
+    result->p = bench_mann_whitney(left->block[result->value], left->blocks,
+                                   right->block[result->value], right->blocks);
     result->self[BENCH_OLD] = NAN;
     result->self[BENCH_NEW] = bench_spread_noise(new, old->count, BENCH_NOISE_LEVEL, comparisons);
     result->ratio = ratio.ratio, result->low = ratio.low, result->high = ratio.high;
@@ -130,8 +138,9 @@ static void measure(BenchComparison *result, int comparisons, const BenchCompare
     BenchTimes times[BENCH_BUILDS];
     double low = params->interleaved ? BENCH_LOW : 0.5;
     for (int b = 0; b < BENCH_BUILDS; b++) {
-        times[b] = times_of(&side[b], result->time);
-        result->ms[b] = 1e3 * bench_quantile(times[b].value, times[b].count, low);
+        times[b] = times_of(&side[b], result->value);
+        result->amount[b] =
+            bench_value_unit(result->value) * bench_quantile(times[b].value, times[b].count, low);
         result->outlier[b] = sm_alloc((size_t)times[b].count, sizeof(bool));
         result->outliers[b] = bench_outliers(times[b].value, times[b].count, result->outlier[b]);
     }
@@ -153,9 +162,10 @@ static BenchComparisonVerdict judge(BenchComparison *result, int comparisons,
     const BenchSide *side = result->samples->side;
     double noise = fmax(result->self[BENCH_OLD], result->self[BENCH_NEW]); /* NaN: the other one */
     double least = params->interleaved ? least_interleaved : least_apart;
-    double step = bench_quantile(side[BENCH_OLD].time[0], side[BENCH_OLD].count,
+    int whole = first_value(params);
+    double step = bench_quantile(side[BENCH_OLD].value[whole], side[BENCH_OLD].count,
                                  params->interleaved ? BENCH_LOW : 0.5);
-    least = fmax(least, least_of_step * 1e3 * step / result->ms[BENCH_OLD]);
+    least = fmax(least, least_of_step * bench_value_unit(whole) * step / result->amount[BENCH_OLD]);
     double limit = isnan(params->threshold) ? BENCH_NOISE_LIMIT : params->threshold;
     result->threshold = fmax(noise, isnan(params->threshold) ? least : params->threshold);
     bool few = params->interleaved ? finds_nothing(params->rounds, comparisons)
@@ -168,11 +178,13 @@ static BenchComparisonVerdict judge(BenchComparison *result, int comparisons,
     return noise > limit ? BENCH_TOO_NOISY : BENCH_SAME;
 }
 
-/* An entry for each time that both builds have, or a single one that says why there is none. */
-static int list_times(const BenchAbScene *samples, BenchComparison *list)
+/* An entry for each value that both builds have, or a single one that says why there is none. */
+static int list_values(const BenchAbScene *samples, const BenchCompareParams *params,
+                       BenchComparison *list)
 {
     BenchComparison blank = {.samples = samples,
-                             .ms = {NAN, NAN},
+                             .value = first_value(params),
+                             .amount = {NAN, NAN},
                              .ratio = NAN,
                              .low = NAN,
                              .high = NAN,
@@ -180,17 +192,18 @@ static int list_times(const BenchAbScene *samples, BenchComparison *list)
                              .adjusted = NAN,
                              .self = {NAN, NAN},
                              .threshold = NAN};
-    if (!comparable(&blank)) {
+    if (!comparable(&blank, params)) {
         *list = blank;
         return 1;
     }
     int count = 0;
     blank.verdict = BENCH_SAME;
-    for (int t = 0; t < BENCH_TIMES; t++) {
-        if (!has_time(&samples->side[BENCH_OLD], t) || !has_time(&samples->side[BENCH_NEW], t))
+    for (int v = first_value(params), end = v + values(params); v < end; v++) {
+        if (!bench_side_has(&samples->side[BENCH_OLD], v) ||
+            !bench_side_has(&samples->side[BENCH_NEW], v))
             continue;
         list[count] = blank;
-        list[count++].time = t;
+        list[count++].value = v;
     }
     return count;
 }
@@ -200,7 +213,8 @@ int bench_compare(const BenchAbSamples *all, const BenchCompareParams *params,
 {
     int count = 0, tested = 0;
     BenchComparison *result = sm_alloc((size_t)(all->count * BENCH_TIMES) + 1, sizeof *result);
-    for (int i = 0; i < all->count; i++) count += list_times(&all->scenes[i], result + count);
+    for (int i = 0; i < all->count; i++)
+        count += list_values(&all->scenes[i], params, result + count);
     double *p = sm_alloc((size_t)count, sizeof *p);
     for (int i = 0; i < count; i++) {
         if (result[i].verdict == BENCH_SAME) measure(&result[i], count, params);

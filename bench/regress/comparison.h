@@ -1,4 +1,5 @@
-/* comparison.h - is the new build slower than the old one? Verdicts on every time of every scene.
+/* comparison.h - is the new build slower than the old one? Verdicts on every time of every scene,
+ * or on its cycles, which are judged in the same way: "time" below is either.
  *
  * A time is called slower or faster where all of this holds: the ratio of the lower quartiles over
  * processes (beside a file: medians) lies beyond the threshold; its 95% bootstrap interval does not
@@ -33,6 +34,7 @@ typedef struct {
     int rounds;
     double threshold; /* as a share (0.05); NaN: as measured */
     unsigned long seed;
+    bool by_cycles; /* judge the cycles of a step, and no times */
 } BenchCompareParams;
 
 enum {
@@ -45,8 +47,9 @@ enum {
 
 typedef struct {
     const BenchAbScene *samples;
-    int time;                    /* 0 total, else 1 + stage; 0 alone where nothing is compared */
-    double ms[BENCH_BUILDS];     /* lower quartiles over processes, or medians */
+    int value; /* which: 0 total, 1 + stage, or BENCH_TIMES + BENCH_CYCLES; the first alone where
+                * nothing is compared */
+    double amount[BENCH_BUILDS]; /* lower quartiles over processes, or medians: ms, or cycles */
     double ratio, low, high;     /* new / old, with its interval */
     double p, adjusted;          /* Mann-Whitney; by Holm */
     double self[BENCH_BUILDS];   /* each build against itself, as a share; NaN: not known */
@@ -56,6 +59,12 @@ typedef struct {
     BenchComparisonVerdict verdict;
     char reason[256]; /* of INVALID and no baseline */
 } BenchComparison;
+
+/* What is shown of 1 s, or of 1 count. */
+static inline double bench_value_unit(int value)
+{
+    return value < BENCH_TIMES ? 1e3 : 1;
+}
 
 /* Compares all; the caller frees the list with bench_comparisons_free() before the scenes. */
 int bench_compare(const BenchAbSamples *all, const BenchCompareParams *params,

@@ -93,20 +93,21 @@ void bench_regression_summary(const BenchRegression *found, size_t size, char *l
     int had[BENCH_COMPARISONS] = {0};
     for (int i = 0; i < found->count; i++) had[found->list[i].verdict]++;
     const BenchComparison *worst = find_worst(found);
+    const char *of = found->params->by_cycles ? "scenes" : "times";
     if (worst && worst->verdict == BENCH_INCORRECT)
         snprintf(line, size, "INVALID: %s: %s", worst->samples->scene, worst->reason);
     else if (worst)
-        snprintf(line, size, "SLOWER in %d of %d times, most in %s %s: %.3f times (%.3f to %.3f)",
-                 had[BENCH_SLOWER], found->count, worst->samples->scene,
-                 bench_time_name(worst->samples, worst->time), worst->ratio, worst->low,
+        snprintf(line, size, "SLOWER in %d of %d %s, most in %s %s: %.3f times (%.3f to %.3f)",
+                 had[BENCH_SLOWER], found->count, of, worst->samples->scene,
+                 bench_value_name(worst->samples, worst->value), worst->ratio, worst->low,
                  worst->high);
     else if (found->count == had[BENCH_NO_BASELINE])
         snprintf(line, size, "no baseline: nothing could be compared");
     else if (had[BENCH_SAME] + had[BENCH_FASTER] == 0)
-        snprintf(line, size, "nothing could be judged, of %d times", found->count);
+        snprintf(line, size, "nothing could be judged, of %d %s", found->count, of);
     else
-        snprintf(line, size, "not slower in %d of %d times", had[BENCH_SAME] + had[BENCH_FASTER],
-                 found->count);
+        snprintf(line, size, "not slower in %d of %d %s", had[BENCH_SAME] + had[BENCH_FASTER],
+                 found->count, of);
     int unsure = had[BENCH_TOO_NOISY] + had[BENCH_TOO_FEW];
     if (!unsure) return;
     char remedy[64] = "more --rounds";
@@ -128,23 +129,31 @@ static void percent_text(double share, char text[BENCH_GRID_TEXT])
         strcpy(text, "-");
 }
 
-static void instructions_text(const BenchComparison *one, char text[BENCH_GRID_TEXT])
+/* Of a scene's first line: new over old of what was counted; NaN: not known. */
+static double counter_ratio(const BenchComparison *one, BenchCounter counter)
 {
     const BenchSide *side = one->samples->side;
-    double old = side[BENCH_OLD].instructions, new = side[BENCH_NEW].instructions;
-    if (one->time == 0 && isfinite(old) && isfinite(new) && old > 0)
-        snprintf(text, BENCH_GRID_TEXT, "%.4f", new / old);
+    if (one->value && one->value < BENCH_TIMES) return NAN;
+    return bench_side_counter(&side[BENCH_NEW], counter) /
+           bench_side_counter(&side[BENCH_OLD], counter);
 }
 
-static void add_line(BenchGrid *grid, const BenchComparison *one, bool counted)
+static bool has_counter(const BenchRegression *found, BenchCounter counter)
+{
+    for (int i = 0; i < found->count && found->counter; i++)
+        if (isfinite(counter_ratio(&found->list[i], counter))) return true;
+    return false;
+}
+
+static void add_line(BenchGrid *grid, const BenchComparison *one, const BenchRegression *found)
 {
     BenchGridLine *line = bench_grid_add(grid);
     int c = 0;
     bool compared = one->verdict != BENCH_INCORRECT && one->verdict != BENCH_NO_BASELINE;
     snprintf((*line)[c++], BENCH_GRID_TEXT, "%s", one->samples->scene);
     snprintf((*line)[c++], BENCH_GRID_TEXT, "%s",
-             compared ? bench_time_name(one->samples, one->time) : "-");
-    for (int b = 0; b < BENCH_BUILDS; b++) bench_grid_number(one->ms[b], (*line)[c++]);
+             compared ? bench_value_name(one->samples, one->value) : "-");
+    for (int b = 0; b < BENCH_BUILDS; b++) bench_grid_number(one->amount[b], (*line)[c++]);
     char(*text)[BENCH_GRID_TEXT] = &(*line)[c];
     for (int i = 0; i < 4; i++) strcpy(text[i], "-");
     if (compared) {
@@ -155,17 +164,32 @@ static void add_line(BenchGrid *grid, const BenchComparison *one, bool counted)
         percent_text(one->threshold, text[3]);
     }
     strcpy(text[4], bench_comparison_name(one->verdict));
-    if (counted) instructions_text(one, text[5]);
+    for (int k = 0, column = 5; k < BENCH_COUNTERS; k++) {
+        if (!has_counter(found, (BenchCounter)k)) continue;
+        double counted = counter_ratio(one, (BenchCounter)k);
+        if (isfinite(counted)) snprintf(text[column], BENCH_GRID_TEXT, "%.4f", counted);
+        column++;
+    }
 }
 
 static void fill_grid(const BenchRegression *found, BenchGrid *grid)
 {
-    static const char *const headings[] = {"scene", "time", "old ms",    "new ms", "new/old",
-                                           "95%",   "p",    "threshold", "verdict"};
+    bool cycles = found->params->by_cycles;
+    const char *const headings[] = {"scene",
+                                    cycles ? "counter" : "time",
+                                    cycles ? "old" : "old ms",
+                                    cycles ? "new" : "new ms",
+                                    "new/old",
+                                    "95%",
+                                    "p",
+                                    "threshold",
+                                    "verdict"};
     *grid = (BenchGrid){0};
     for (int i = 0; i < 9; i++) bench_grid_column(grid, headings[i], i < 2 || i == 8);
-    if (found->counter) bench_grid_column(grid, "instructions", false);
-    for (int i = 0; i < found->count; i++) add_line(grid, &found->list[i], found->counter);
+    for (int c = 0; c < BENCH_COUNTERS; c++)
+        if (has_counter(found, (BenchCounter)c))
+            bench_grid_column(grid, bench_counter_names[c], false);
+    for (int i = 0; i < found->count; i++) add_line(grid, &found->list[i], found);
 }
 
 static void write_start(FILE *file, const BenchRegression *found)
@@ -192,8 +216,8 @@ static void write_outliers(FILE *file, const BenchRegression *found, int first, 
         if (!any)
             fprintf(file, "%s%s: outliers, kept, old+new of %d+%d:", bullet, samples->scene,
                     samples->side[BENCH_OLD].count, samples->side[BENCH_NEW].count);
-        fprintf(file, "%s %s %d+%d", any ? "," : "", bench_time_name(one->samples, one->time), old,
-                new);
+        fprintf(file, "%s %s %d+%d", any ? "," : "", bench_value_name(one->samples, one->value),
+                old, new);
         any = true;
     }
     if (any) fputc('\n', file);
@@ -232,15 +256,22 @@ static json_t *side_json(const BenchComparison *one, BenchBuild build)
     const BenchSide *side = &one->samples->side[build];
     json_t *samples = json_array(), *rounds = json_array(), *outliers = json_array();
     for (int i = 0; i < side->count; i++) {
-        json_array_append_new(samples, bench_json_number(side->time[one->time][i]));
+        json_array_append_new(samples, bench_json_number(side->value[one->value][i]));
         json_array_append_new(rounds, json_integer(side->round[i]));
         if (one->outlier[build] && one->outlier[build][i])
             json_array_append_new(outliers, json_integer(i));
     }
-    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o}", "ms", bench_json_number(one->ms[build]),
-                     "samples", samples, "rounds", rounds, "outliers", outliers, "self_difference",
-                     bench_json_number(one->self[build]), "instructions",
-                     bench_json_number(one->time ? NAN : side->instructions));
+    bool timed = one->value < BENCH_TIMES;
+    json_t *object = json_pack("{s:o, s:o, s:o, s:o, s:o}", "ms",
+                               bench_json_number(timed ? one->amount[build] : NAN), "samples",
+                               samples, "rounds", rounds, "outliers", outliers, "self_difference",
+                               bench_json_number(one->self[build]));
+    for (int c = 0; c < BENCH_COUNTERS; c++)
+        json_object_set_new(object, bench_counter_names[c],
+                            bench_json_number(one->value && timed
+                                                  ? NAN
+                                                  : bench_side_counter(side, (BenchCounter)c)));
+    return object;
 }
 
 static json_t *comparison_json(const BenchComparison *one)
@@ -248,7 +279,7 @@ static json_t *comparison_json(const BenchComparison *one)
     json_t *reason = one->reason[0] ? bench_json_text(one->reason) : json_null();
     return json_pack(
         "{s:o, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",
-        bench_json_text(one->samples->scene), "time", bench_time_name(one->samples, one->time),
+        bench_json_text(one->samples->scene), "time", bench_value_name(one->samples, one->value),
         "verdict", bench_comparison_name(one->verdict), "reason", reason, "ratio",
         bench_json_number(one->ratio), "low", bench_json_number(one->low), "high",
         bench_json_number(one->high), "p", bench_json_number(one->p), "p_adjusted",
@@ -304,7 +335,7 @@ static json_t *benchmark_json(const BenchComparison *one, BenchBuild build, cons
     const BenchSide *side = &one->samples->side[build];
     char run[160], name[192];
     snprintf(run, sizeof run, "%s/%s/%s", prefix[build], one->samples->scene,
-             bench_time_name(one->samples, one->time));
+             bench_value_name(one->samples, one->value));
     snprintf(name, sizeof name, "%s%s%s", run, aggregate ? "_" : "", aggregate ? aggregate : "");
     bool share = aggregate && !strcmp(aggregate, "cv"); /* a percentage; as Google's, unscaled */
     double shown = share ? time : 1e9 * time;
@@ -327,7 +358,7 @@ static json_t *benchmark_json(const BenchComparison *one, BenchBuild build, cons
 static void add_benchmarks(json_t *list, const BenchComparison *one, BenchBuild build, int family)
 {
     const BenchSide *side = &one->samples->side[build];
-    const double *time = side->time[one->time];
+    const double *time = side->value[one->value];
     size_t count = (size_t)side->count;
     double mean = gsl_stats_mean(time, 1, count);
     double deviation = count > 1 ? gsl_stats_sd(time, 1, count) : 0;
@@ -377,7 +408,9 @@ static void write_case(FILE *file, const BenchComparison *one)
 {
     char line[320];
     const char *name = junit_element(one->verdict);
-    double seconds = isfinite(one->ms[BENCH_NEW]) ? 1e-3 * one->ms[BENCH_NEW] : 0;
+    double seconds = isfinite(one->amount[BENCH_NEW]) && one->value < BENCH_TIMES
+                         ? 1e-3 * one->amount[BENCH_NEW]
+                         : 0;
     if (one->reason[0])
         snprintf(line, sizeof line, "%s", one->reason);
     else
@@ -387,7 +420,7 @@ static void write_case(FILE *file, const BenchComparison *one)
                  100 * one->threshold, one->adjusted);
     fputs("    <testcase classname=\"", file);
     bench_xml_text(file, one->samples->scene);
-    fprintf(file, "\" name=\"%s\" time=\"%.9f\">\n", bench_time_name(one->samples, one->time),
+    fprintf(file, "\" name=\"%s\" time=\"%.9f\">\n", bench_value_name(one->samples, one->value),
             seconds);
     fprintf(file, name ? "      <%s message=\"" : "      <system-out>", name);
     bench_xml_text(file, line);

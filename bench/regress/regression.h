@@ -15,7 +15,7 @@ typedef struct {
     const BenchCompareParams *params;
     BenchMachine machine[BENCH_BUILDS];
     char baseline[256];  /* "FILE.h5", "revision NAME (COMMIT)" */
-    const char *counter; /* who counted instructions; NULL: nobody */
+    const char *counter; /* who counted, "perf_event" or "callgrind"; NULL: none are shown */
     double seconds;      /* that it took */
     char remark[BENCH_REMARKS][BENCH_REMARK];
     int remarks;
@@ -42,11 +42,12 @@ void bench_regression_environment(BenchRegression *found);
 
 /* Writes what was found in a format. The last line of text is the verdict on all.
  * json: {"schema": 1, "verdict", "exit_code", "baseline", "interleaved", "rounds", "comparisons":
- *   [{"scene", "time", "verdict", "ratio", ..., "old": {"samples": [s], "outliers": [places]},
- *   "new"}], "remarks", "environments"}. What is not known is null.
+ *   [{"scene", "time", "verdict", "ratio", ..., "old": {"ms", "samples": [s], "outliers": [places],
+ *   "cycles", ...}, "new"}], "remarks", "environments"}. What is not known is null. By cycles "ms"
+ *   is null, and samples are cycles.
  * junit: a test case for each time; slower is a failure, INVALID an error, what could not be judged
  *   skipped.
- * gbench: Google Benchmark's JSON, every process a repetition, "old/SCENE/TIME" and
+ * gbench, of times alone: Google Benchmark's JSON, every process a repetition, "old/SCENE/TIME" and
  * "new/SCENE/TIME"; its compare.py takes it as `compare.py filters FILE old new`. cpu_time is the
  * wall time too. */
 void bench_regression_write(FILE *file, BenchRegressionFormat format, const BenchRegression *found);

@@ -24,7 +24,7 @@ typedef struct {
 /* One comparison, of the repeats from `first` on, `turn` of them a process. */
 static void compare(const BenchRow *row, int rounds, int first, int turn, Tally *tally)
 {
-    const BenchCompareParams params = {true, rounds, NAN, 1};
+    const BenchCompareParams params = {true, rounds, NAN, 1, false};
     BenchAbSamples all = {0};
     BenchComparison *list;
     bool had[BENCH_COMPARISONS] = {false};
@@ -33,6 +33,7 @@ static void compare(const BenchRow *row, int rounds, int first, int turn, Tally 
         process.repeats = turn;
         process.total += first + i * turn;
         process.stage += first + i * turn;
+        process.counter = NULL;
         int round = i / BENCH_TURNS;
         bench_ab_add(&all, bench_ab_turn(round, i % BENCH_TURNS), round, &process);
     }

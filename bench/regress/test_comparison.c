@@ -25,11 +25,13 @@ static int end(void **state)
     return remove_folder(state);
 }
 
+static bool counted; /* do rows have counters? */
+
 /* A process of a build whose damping takes `factor` times as long; `load` is the machine's. */
 static void add(BenchAbSamples *all, BenchBuild build, int round, const char *scene, double factor,
                 double load)
 {
-    static double total[REPEATS], stage[REPEATS][SM_STAGES];
+    static double total[REPEATS], stage[REPEATS][SM_STAGES], counter[REPEATS][BENCH_COUNTERS];
     BenchRow row = {.w = 2,
                     .threads = 1,
                     .particles = 150,
@@ -38,6 +40,7 @@ static void add(BenchAbSamples *all, BenchBuild build, int round, const char *sc
                     .steps = 100,
                     .total = total,
                     .stage = stage,
+                    .counter = counted ? counter : NULL,
                     .input_hash = 5};
     double process = load * exp(gsl_ran_gaussian(rng, 0.01));
     snprintf(row.scene, sizeof row.scene, "%s", scene);
@@ -50,6 +53,9 @@ static void add(BenchAbSamples *all, BenchBuild build, int round, const char *sc
             stage[r][s] = 1e-5 * (s + 1) * slowed * process * exp(gsl_ran_exponential(rng, 0.02));
             total[r] += stage[r][s];
         }
+        counter[r][BENCH_CYCLES] = 1e6 * factor * exp(gsl_ran_gaussian(rng, 0.003));
+        counter[r][BENCH_INSTRUCTIONS] = 3e6 * factor;
+        counter[r][BENCH_CACHE_MISSES] = counter[r][BENCH_BRANCH_MISSES] = 0;
     }
     stage[REPEATS - 1][SM_POLAR] *= 50; /* a preempted block */
     bench_ab_add(all, build, round, &row);
@@ -70,7 +76,7 @@ static BenchComparisonVerdict verdict_of(const BenchComparison *list, int count,
                                          int time)
 {
     for (int i = 0; i < count; i++)
-        if (!strcmp(list[i].samples->scene, scene) && list[i].time == time) return list[i].verdict;
+        if (!strcmp(list[i].samples->scene, scene) && list[i].value == time) return list[i].verdict;
     fail_msg("no %s %s", scene, time ? sm_stage_name((SmStage)(time - 1)) : "total");
     return BENCH_INCORRECT;
 }
@@ -79,10 +85,10 @@ TEST(times_are_called_as_the_engine_calls_its_stages)
 {
     BenchAbScene lattice = {.side[BENCH_NEW].row.engine = "fastlsm"};
     BenchAbScene meshless = {.side[BENCH_NEW].row.engine = "meshless"};
-    assert_string_equal(bench_time_name(&lattice, 0), "total");
-    assert_string_equal(bench_time_name(&lattice, 1 + SM_SHAPE_MATCHING), "shape_matching");
-    assert_string_equal(bench_time_name(&meshless, 1 + SM_SHAPE_MATCHING), "motion");
-    assert_string_equal(bench_time_name(&meshless, 1 + SM_OTHER), "skin");
+    assert_string_equal(bench_value_name(&lattice, 0), "total");
+    assert_string_equal(bench_value_name(&lattice, 1 + SM_SHAPE_MATCHING), "shape_matching");
+    assert_string_equal(bench_value_name(&meshless, 1 + SM_SHAPE_MATCHING), "motion");
+    assert_string_equal(bench_value_name(&meshless, 1 + SM_OTHER), "skin");
 }
 
 TEST(a_slower_stage_is_caught_and_no_other_blamed)
@@ -93,7 +99,7 @@ TEST(a_slower_stage_is_caught_and_no_other_blamed)
         play(&all, "slow", 10, 1.08, 0.02);
         play(&all, "same", 10, 1, 0.02);
         play(&all, "fast", 10, 0.8, 0.02);
-        const BenchCompareParams params = {true, 10, NAN, 1};
+        const BenchCompareParams params = {true, 10, NAN, 1, false};
         int count = bench_compare(&all, &params, &list);
         assert_int_equal(count, 3 * BENCH_TIMES);
         assert_int_equal(verdict_of(list, count, "slow", 1 + SM_DAMPING), BENCH_SLOWER);
@@ -116,7 +122,7 @@ TEST(a_build_against_itself_raises_no_alarm)
         BenchComparison *list;
         play(&all, "one", 8, 1, trial % 2 ? 0.3 : 0.02);
         play(&all, "two", 8, 1, trial % 2 ? 0.3 : 0.02);
-        const BenchCompareParams params = {true, 8, NAN, (unsigned long)trial};
+        const BenchCompareParams params = {true, 8, NAN, (unsigned long)trial, false};
         int count = bench_compare(&all, &params, &list);
         int code = bench_comparisons_exit(list, count);
         alarms += code != SM_OK && code != BENCH_EXIT_NOT_JUDGED;
@@ -128,7 +134,7 @@ TEST(a_build_against_itself_raises_no_alarm)
 
 TEST(beside_a_file_the_threshold_is_wider)
 {
-    const BenchCompareParams params = {false, 5, NAN, 1};
+    const BenchCompareParams params = {false, 5, NAN, 1, false};
     int alarms = 0;
     for (int trial = 0; trial < 30; trial++) {
         BenchAbSamples all = {0};
@@ -154,7 +160,7 @@ TEST(a_threshold_given_rules)
     BenchAbSamples all = {0};
     BenchComparison *list;
     play(&all, "slow", 8, 1.2, 0.02);
-    BenchCompareParams params = {true, 8, 0.5, 1};
+    BenchCompareParams params = {true, 8, 0.5, 1, false};
     int count = bench_compare(&all, &params, &list);
     assert_int_equal(verdict_of(list, count, "slow", 1 + SM_DAMPING), BENCH_SAME);
     bench_comparisons_free(list, count);
@@ -178,7 +184,7 @@ TEST(what_cannot_be_compared_says_why)
     wrong->valid = false;
     strcpy(wrong->reason, "goals are off by 1 cell");
     bench_ab_scene(&all, "other")->side[BENCH_OLD].row.particles = 149;
-    const BenchCompareParams params = {true, 3, NAN, 1};
+    const BenchCompareParams params = {true, 3, NAN, 1, false};
     int count = bench_compare(&all, &params, &list);
     assert_int_equal(verdict_of(list, count, "few", 0), BENCH_TOO_FEW);
     assert_int_equal(verdict_of(list, count, "wrong", 0), BENCH_INCORRECT);
@@ -200,14 +206,14 @@ TEST(what_nobody_could_judge_is_not_ok)
     BenchComparison *list;
     char line[256];
     play(&all, "few", 3, 1, 0.02);
-    const BenchCompareParams few = {true, 3, NAN, 1}, noisy = {true, 8, 0.0001, 1};
+    const BenchCompareParams few = {true, 3, NAN, 1, false}, noisy = {true, 8, 0.0001, 1, false};
     BenchRegression found = {.params = &few};
     found.count = bench_compare(&all, &few, &list);
     found.list = list;
     assert_int_equal(bench_comparisons_exit(list, found.count), BENCH_EXIT_NOT_JUDGED);
     bench_regression_summary(&found, sizeof line, line);
     assert_non_null(strstr(line, "nothing could be judged, of 6 times; 6 could not"));
-    const BenchCompareParams beside = {false, 1, NAN, 1};
+    const BenchCompareParams beside = {false, 1, NAN, 1, false};
     assert_non_null(strstr(line, "(0 too noisy, 6 too few samples): at least --rounds 7"));
     assert_int_equal(bench_comparisons_rounds(list, found.count, &beside), 3);
     list[2].verdict = BENCH_SAME;
@@ -242,7 +248,7 @@ TEST(epsilon_0_is_stated)
         BenchSide *side = bench_ab_scene(&all, "x")->side;
         side[BENCH_OLD].row.epsilon = cases[c].old;
         side[BENCH_NEW].row.epsilon = cases[c].new;
-        const BenchCompareParams params = {true, 8, 9, 1};
+        const BenchCompareParams params = {true, 8, 9, 1, false};
         int count = bench_compare(&all, &params, &list);
         assert_int_equal(verdict_of(list, count, "x", 0), cases[c].verdict);
         if (c == 1) assert_string_equal(list[0].reason, "other work: epsilon 0, now 0.5");
@@ -251,33 +257,63 @@ TEST(epsilon_0_is_stated)
     }
 }
 
+/* Cycles tell where times are too noisy to; a build that has none is no baseline. */
+TEST(cycles_are_judged_instead_of_times)
+{
+    const BenchCompareParams params = {true, 10, NAN, 1, true};
+    BenchAbSamples all = {0};
+    BenchComparison *list;
+    counted = true;
+    play(&all, "slow", 10, 1.04, 0.5);
+    play(&all, "same", 10, 1, 0.5);
+    add(&all, BENCH_NEW, 0, "bare", 1, 1);
+    counted = false;
+    add(&all, BENCH_OLD, 0, "bare", 1, 1);
+    int count = bench_compare(&all, &params, &list);
+    assert_int_equal(count, 3);
+    assert_int_equal(verdict_of(list, count, "slow", BENCH_TIMES), BENCH_SLOWER);
+    assert_int_equal(verdict_of(list, count, "same", BENCH_TIMES), BENCH_SAME);
+    assert_int_equal(verdict_of(list, count, "bare", BENCH_TIMES), BENCH_NO_BASELINE);
+    assert_string_equal(list[2].reason, "the baseline has no cycles");
+    assert_string_equal(bench_value_name(list->samples, list->value), "cycles");
+    assert_true(fabs(list[0].amount[BENCH_OLD] / 1e6 - 1) < 0.02);
+    assert_true(fabs(list[0].ratio - 1.04) < 0.005);
+    const BenchSide *side = list[0].samples->side;
+    assert_true(bench_side_counter(&side[BENCH_OLD], BENCH_INSTRUCTIONS) == 3e6);
+    assert_true(isnan(bench_side_counter(&side[BENCH_OLD], BENCH_CACHE_MISSES)));
+    bench_comparisons_free(list, count);
+    bench_ab_free(&all);
+}
+
 /* A stage that takes no time (no damping in the scene) or that an old build has not is left out. */
 TEST(a_stage_without_time_is_left_out)
 {
     BenchAbSamples all = {0};
     BenchComparison *list;
     play(&all, "x", 5, 0, 0.02);
-    const BenchCompareParams params = {true, 5, NAN, 1};
+    const BenchCompareParams params = {true, 5, NAN, 1, false};
     int count = bench_compare(&all, &params, &list);
     assert_int_equal(count, BENCH_TIMES - 1);
-    for (int i = 0; i < count; i++) assert_int_not_equal(list[i].time, 1 + SM_DAMPING);
+    for (int i = 0; i < count; i++) assert_int_not_equal(list[i].value, 1 + SM_DAMPING);
     bench_comparisons_free(list, count);
     bench_ab_free(&all);
 }
 
 /* What one comparison of three scenes looks like in a format, written to a file in the folder. */
-static void write_format(BenchRegressionFormat format, const char *name)
+static void write_format(BenchRegressionFormat format, bool cycles, const char *name)
 {
     BenchAbSamples all = {0};
     BenchComparison *list;
+    counted = cycles;
     play(&all, "slow <&\"> \xc3\xa9", 7, 1.3, 0.02);
     play(&all, "bad", 5, 1, 0.02);
     add(&all, BENCH_NEW, 0, "young", 1, 1);
     bench_ab_scene(&all, "bad")->side[BENCH_NEW].valid = false;
     strcpy(bench_ab_scene(&all, "bad")->side[BENCH_NEW].reason, "1 < 2");
     BenchSide *slow = bench_ab_scene(&all, "slow <&\"> \xc3\xa9")->side;
-    slow[BENCH_OLD].instructions = 1000, slow[BENCH_NEW].instructions = 1100;
-    const BenchCompareParams params = {true, 7, NAN, 1};
+    if (!cycles) slow[BENCH_OLD].instructions = 1000, slow[BENCH_NEW].instructions = 1100;
+    const BenchCompareParams params = {true, 7, NAN, 1, cycles};
+    counted = false;
     BenchRegression *found = sm_alloc(1, sizeof *found);
     found->count = bench_compare(&all, &params, &list);
     found->list = list;
@@ -320,7 +356,7 @@ TEST(text_and_markdown_end_in_the_verdict)
         "1.1000",
         "0.0"};
     for (int f = BENCH_REGRESSION_TEXT; f <= BENCH_REGRESSION_MARKDOWN; f++) {
-        write_format((BenchRegressionFormat)f, "out.txt");
+        write_format((BenchRegressionFormat)f, false, "out.txt");
         read_back("out.txt", sizeof text, text);
         for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++)
             if (!strstr(text, wanted[i])) fail_msg("no '%s' in\n%s", wanted[i], text);
@@ -331,7 +367,7 @@ TEST(text_and_markdown_end_in_the_verdict)
 
 TEST(json_holds_every_sample)
 {
-    write_format(BENCH_REGRESSION_JSON, "out.json");
+    write_format(BENCH_REGRESSION_JSON, false, "out.json");
     json_t *root = json_load_file(path_in("out.json"), 0, NULL), *list;
     assert_non_null(root);
     list = json_object_get(root, "comparisons");
@@ -359,10 +395,37 @@ TEST(json_holds_every_sample)
     json_decref(root);
 }
 
+TEST(cycles_are_written_as_such)
+{
+    static char text[16384];
+    static const char *const wanted[] = {"| scene | counter | old | new | new/old |",
+                                         "| cycles | instructions |\n",
+                                         " \xc3\xa9 | cycles | ",
+                                         " | slower | 1.30",
+                                         " | 1.3000 |\n",
+                                         "**INVALID: bad"};
+    write_format(BENCH_REGRESSION_MARKDOWN, true, "out.txt");
+    read_back("out.txt", sizeof text, text);
+    for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++)
+        if (!strstr(text, wanted[i])) fail_msg("no '%s' in\n%s", wanted[i], text);
+    write_format(BENCH_REGRESSION_JSON, true, "out.json");
+    json_t *root = json_load_file(path_in("out.json"), 0, NULL);
+    json_t *list = json_object_get(root, "comparisons");
+    assert_int_equal(json_array_size(list), 3);
+    json_t *one = json_array_get(list, 0), *old = json_object_get(one, "old");
+    assert_string_equal(json_string_value(json_object_get(one, "time")), "cycles");
+    assert_true(json_is_null(json_object_get(old, "ms")));
+    assert_true(fabs(json_number_value(json_object_get(old, "cycles")) / 1e6 - 1) < 0.02);
+    assert_true(fabs(json_number_value(json_array_get(json_object_get(old, "samples"), 3)) / 1e6 -
+                     1) < 0.02);
+    assert_true(json_number_value(json_object_get(old, "instructions")) == 3e6);
+    json_decref(root);
+}
+
 /* As its compare.py wants it: name, run_type, real_time, cpu_time, time_unit of every run. */
 TEST(gbench_holds_runs_and_aggregates)
 {
-    write_format(BENCH_REGRESSION_GBENCH, "out.json");
+    write_format(BENCH_REGRESSION_GBENCH, false, "out.json");
     json_t *root = json_load_file(path_in("out.json"), 0, NULL), *one;
     assert_non_null(root);
     size_t i, runs = 0, aggregates = 0;
@@ -389,19 +452,21 @@ TEST(gbench_holds_runs_and_aggregates)
 /* Python reads the XML: well-formed, and the counts are those of the elements. */
 TEST(junit_is_xml)
 {
-    char command[1024];
-    write_format(BENCH_REGRESSION_JUNIT, "out.xml");
-    snprintf(
-        command, sizeof command,
-        "python3 -c 'import sys, xml.etree.ElementTree as e\n"
-        "s = e.parse(sys.argv[1]).getroot()[0]\n"
-        "n = lambda t: len(s.findall(\"testcase/\" + t))\n"
-        "assert [s.get(k) for k in (\"tests\", \"failures\", \"errors\", \"skipped\")] == "
-        "[str(len(s.findall(\"testcase\"))), str(n(\"failure\")), \"1\", str(n(\"skipped\"))]\n"
-        "assert n(\"failure\") >= 1 and n(\"error\") == 1 and n(\"skipped\") >= 1\n"
-        "assert s[0].get(\"classname\") == \"slow <&\\\"> \\u00e9\"' %s",
-        path_in("out.xml"));
-    assert_int_equal(system(command), 0);
+    for (int cycles = 0; cycles < 2; cycles++) {
+        char command[1024];
+        write_format(BENCH_REGRESSION_JUNIT, cycles, "out.xml");
+        snprintf(
+            command, sizeof command,
+            "python3 -c 'import sys, xml.etree.ElementTree as e\n"
+            "s = e.parse(sys.argv[1]).getroot()[0]\n"
+            "n = lambda t: len(s.findall(\"testcase/\" + t))\n"
+            "assert [s.get(k) for k in (\"tests\", \"failures\", \"errors\", \"skipped\")] == "
+            "[str(len(s.findall(\"testcase\"))), str(n(\"failure\")), \"1\", str(n(\"skipped\"))]\n"
+            "assert n(\"failure\") >= 1 and n(\"error\") == 1 and n(\"skipped\") >= 1\n"
+            "assert s[0].get(\"classname\") == \"slow <&\\\"> \\u00e9\"' %s",
+            path_in("out.xml"));
+        assert_int_equal(system(command), 0);
+    }
 }
 
 TEST_GROUP(start, end)

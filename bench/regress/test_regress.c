@@ -88,7 +88,8 @@ TEST(usage)
 {
     expect("shapebench regress", 2, "compare with what?");
     expect("shapebench regress --baseline a --revision b", 2, "compare with what?");
-    expect("shapebench regress --baseline a --counts", 2, "--counts: a file has no");
+    expect("shapebench regress --baseline a --by cycles --format gbench", 2, "has times alone");
+    expect("shapebench regress --baseline a --by instructions", 2, "not one of time, cycles");
     expect("shapebench regress --baseline a --paper octree", 2, "--paper: a file has its own");
     expect("shapebench regress --baseline a --format pdf", 2, "'pdf' is not one of text, markdown");
     expect("shapebench regress --baseline a --threshold x", 2, "--threshold: 'x'");
@@ -207,6 +208,32 @@ TEST(beside_a_stored_file)
     bench_row_free(&row);
 }
 
+/* Where there are none, that is a line; a file may hold none. */
+TEST(counters_or_why_not)
+{
+    char why[160];
+    bool there = bench_counters_there(sizeof why, why);
+    if (!there)
+        expect("shapebench regress --baseline tiny.h5 --by cycles " TINY, 7,
+               "--by cycles: none can be read: ");
+    BenchRow row;
+    BenchMachine machine;
+    row_of_tiny(&row, &machine);
+    free(row.counter);
+    row.counter = NULL;
+    row.cycles = row.instructions = NAN;
+    store("uncounted.h5", &row, &machine);
+    if (there)
+        expect("shapebench regress --baseline uncounted.h5 --by cycles " TINY, 6,
+               "no baseline: uncounted.h5 holds no cycles");
+    expect("shapebench regress --baseline uncounted.h5 --threshold 9 --rounds 3 --counters " TINY,
+           0, "no counters: uncounted.h5 or this build has none");
+    if (there)
+        expect("shapebench regress --baseline tiny.h5 --by cycles --threshold 9 --rounds 3 " TINY,
+               0, "not slower in 1 of 1 scenes");
+    bench_row_free(&row);
+}
+
 TEST(places_that_cannot_be_written)
 {
     expect("shapebench regress --baseline tiny.h5 -o no/such/out.txt", 4, "no/such/out.txt");
@@ -224,6 +251,7 @@ static void make_repository(const char *cmake)
     write_text("CMakeLists.txt", cmake);
     write_text("program.c", "#include <stdlib.h>\n#include <unistd.h>\n"
                             "int main(int n, char **v) { (void)n;\n"
+                            "if (getenv(\"UNCOUNTED\")) unsetenv(\"LD_PRELOAD\");\n"
                             "return getenv(\"FAIL\") ? atoi(getenv(\"FAIL\")) : execv(\"" BINARY_DIR
                             "/shapebench\", v); }\n");
     Result result;
@@ -267,6 +295,47 @@ TEST(another_revision_is_built_and_measured)
            0, "1\n"); /* once, by its own name and not the file's */
     expect("cd repo && FAIL=139 shapebench regress --revision HEAD --rounds 7 " TINY, 1,
            "the baseline crashed on scene tiny.cfg (exit code 139)");
+}
+
+/* A library that has the kernel count the ns that a thread runs in place of what the processor
+ * counts, which virtual machines lack. */
+static const char clock_for_counters[] =
+    "#define _GNU_SOURCE\n#include <dlfcn.h>\n#include <linux/perf_event.h>\n"
+    "#include <stdarg.h>\n#include <sys/syscall.h>\n"
+    "long syscall(long n, ...) {\n"
+    "va_list v; long a[6]; va_start(v, n);\n"
+    "for (int i = 0; i < 6; i++) a[i] = va_arg(v, long);\n"
+    "struct perf_event_attr *e = (void *)a[0]; va_end(v);\n"
+    "if (n == SYS_perf_event_open) e->type = PERF_TYPE_SOFTWARE, e->config = "
+    "PERF_COUNT_SW_TASK_CLOCK;\n"
+    "return ((long (*)(long, ...))dlsym(RTLD_NEXT, \"syscall\"))(n, a[0], a[1], a[2], a[3], a[4], "
+    "a[5]); }\n";
+
+#define COUNTING "LD_PRELOAD=\"$PWD/clock.so\" shapebench "
+
+TEST(cycles_are_judged_where_they_can_be_read)
+{
+    BenchRow row;
+    BenchMachine machine;
+    Result result;
+    write_text("clock.c", clock_for_counters);
+    run("cc -shared -fPIC clock.c -o clock.so -ldl && " COUNTING "info", &result);
+    if (!strstr(result.out, "counters      cycles instructions "))
+        skip_because("nothing can be put before the kernel's counters here");
+    expect(COUNTING "tables " TINY "--counters -o tiny.h5 --overwrite", 0, "branch misses\ntiny ");
+    expect(COUNTING "regress --baseline tiny.h5 --by cycles --threshold 9 --rounds 3 " TINY, 0,
+           "not slower in 1 of 1 scenes");
+    row_of_tiny(&row, &machine);
+    assert_true(row.cycles > 0 && row.counter[0][BENCH_CYCLES] > 0);
+    for (int r = 0; r < row.repeats; r++) row.counter[r][BENCH_CYCLES] /= 1000;
+    snprintf(machine.counters, sizeof machine.counters, "cycles");
+    store("fast.h5", &row, &machine);
+    expect(COUNTING "regress --baseline fast.h5 --by cycles --threshold 1 --rounds 4 " TINY, 5,
+           "SLOWER in 1 of 1 scenes, most in tiny cycles: ");
+    bench_row_free(&row);
+    expect("cp clock.so repo; cd repo && UNCOUNTED=1 " COUNTING
+           "regress --revision HEAD --by cycles --rounds 6 " TINY,
+           6, "tiny: the baseline has no cycles"); /* of the test before, and built there */
 }
 
 TEST(revisions_that_cannot_be_had)

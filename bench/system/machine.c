@@ -15,6 +15,7 @@
 
 #include "../../lib/isa.h"
 #include "../../lib/printable.h"
+#include "counters.h"
 #include "provenance.h"
 #include "quote.h"
 
@@ -31,6 +32,7 @@ static const BenchField fields[] = {
     FIELD(BENCH_TEXT, governor),   FIELD(BENCH_TEXT, kernel),
     FIELD(BENCH_TEXT, libraries),  FIELD(BENCH_TEXT, hostname),
     FIELD(BENCH_TEXT, utc),        FIELD(BENCH_TEXT, command),
+    FIELD(BENCH_TEXT, counters),
 };
 enum { FIELDS = sizeof fields / sizeof fields[0] };
 
@@ -203,6 +205,13 @@ static void read_system(BenchMachine *machine)
               machine->governor);
 }
 
+static void read_counters(BenchMachine *machine)
+{
+    char text[sizeof machine->counters - 8];
+    bool there = bench_counters_there(sizeof text, text);
+    snprintf(machine->counters, sizeof machine->counters, "%s%s", there ? "" : "none: ", text);
+}
+
 void bench_machine_read(int argc, char **argv, int threads, BenchMachine *machine)
 {
     memset(machine, 0, sizeof *machine);
@@ -213,6 +222,7 @@ void bench_machine_read(int argc, char **argv, int threads, BenchMachine *machin
     snprintf(machine->flags, sizeof machine->flags, "%s", SHAPEBENCH_FLAGS);
     machine->threads = threads;
     snprintf(machine->isa, sizeof machine->isa, "%s", sm_isa_name(sm_isa()));
+    read_counters(machine);
     read_cpu(machine);
     read_caches(machine);
     read_system(machine);

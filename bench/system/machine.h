@@ -17,7 +17,8 @@ typedef struct {
     int cores;                         /* processors that this process may run on */
     int threads;                       /* used */
     char isa[16];                      /* instruction set of the kernels: lib/isa.h */
-    bool git_dirty; /* sources were changed after the commit when the program was built */
+    char counters[160]; /* of the processor that can be read, or "none: ..." (counters.h) */
+    bool git_dirty;     /* sources were changed after the commit when the program was built */
 } BenchMachine;
 
 /* `argv` is the whole command line; it is stored quoted for a shell, and cut at its room with

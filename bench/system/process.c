@@ -4,13 +4,10 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
-#include <linux/perf_event.h>
-#include <math.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/prctl.h>
-#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -33,21 +30,6 @@ void bench_process_catch(void)
 int bench_process_caught(void)
 {
     return caught;
-}
-
-/* Instructions in user mode of process `pid` from its exec on, with all its children; -1 where the
- * kernel or the machine has no such counter. */
-static int open_counter(pid_t pid)
-{
-    struct perf_event_attr event = {.size = sizeof event,
-                                    .type = PERF_TYPE_HARDWARE,
-                                    .config = PERF_COUNT_HW_INSTRUCTIONS,
-                                    .disabled = 1,
-                                    .inherit = 1,
-                                    .exclude_kernel = 1,
-                                    .exclude_hv = 1,
-                                    .enable_on_exec = 1};
-    return (int)syscall(SYS_perf_event_open, &event, pid, -1, -1, PERF_FLAG_FD_CLOEXEC);
 }
 
 /* In the child; waits for the parent's word (`start` closes), then becomes the program. */
@@ -96,16 +78,11 @@ static bool await(const BenchProcess *process, pid_t pid, int *status)
     }
 }
 
-static SmCode oversee(const BenchProcess *process, pid_t pid, int counter, BenchProcessEnd *end,
-                      SmError *error)
+static SmCode oversee(const BenchProcess *process, pid_t pid, BenchProcessEnd *end, SmError *error)
 {
     int status = 0;
-    long long counted;
     bool whole = await(process, pid, &status);
     kill(-pid, SIGKILL); /* whatever it has left behind */
-    end->instructions = NAN;
-    if (counter >= 0 && read(counter, &counted, sizeof counted) == sizeof counted && counted > 0)
-        end->instructions = (double)counted;
     end->status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     if (!whole) return sm_fail(error, SM_INPUT, "interrupted; nothing is left behind");
     return SM_OK;
@@ -129,7 +106,6 @@ SmCode bench_process_run(const BenchProcess *process, BenchProcessEnd *end, SmEr
         become(process, start[0], failure[1], parent);
     }
     if (pid > 0) setpgid(pid, pid);
-    int counter = pid > 0 && process->count ? open_counter(pid) : -1;
     close(start[0]);
     close(start[1]);
     close(failure[1]);
@@ -138,9 +114,8 @@ SmCode bench_process_run(const BenchProcess *process, BenchProcessEnd *end, SmEr
     if (pid > 0 && read(failure[0], &number, sizeof number) == sizeof number)
         waitpid(pid, NULL, 0);
     else if (pid > 0)
-        code = oversee(process, pid, counter, end, error);
+        code = oversee(process, pid, end, error);
     close(failure[0]);
-    if (counter >= 0) close(counter);
     if (number)
         return sm_fail(error, SM_INPUT, "%.100s cannot be started: %s", process->word[0],
                        strerror(number));

@@ -21,14 +21,12 @@ typedef void (*BenchProcessTick)(void *context);
 typedef struct {
     const char *const *word; /* NULL-terminated; word[0] is looked for in PATH */
     const char *output;      /* file for standard output and error together, or NULL: nowhere */
-    bool count;              /* count its instructions, if the kernel allows */
     BenchProcessTick tick;   /* with `context` */
     void *context;
 } BenchProcess;
 
 typedef struct {
-    int status;          /* exit status, or 128 + signal */
-    double instructions; /* in user mode, of all its threads and children; NaN: not counted */
+    int status; /* exit status, or 128 + signal */
 } BenchProcessEnd;
 
 /* Runs it to its end. SM_INPUT: cannot be started, with the reason (not found); or interrupted, see

@@ -24,6 +24,23 @@ static bool timed(const void *record)
     return bench_row_timed(record);
 }
 
+static bool checked(const void *record)
+{
+    return ((const BenchRow *)record)->valid;
+}
+
+static double particle_cycles(const void *record)
+{
+    const BenchRow *row = record;
+    return row->cycles / (double)row->particles;
+}
+
+static double cycle_instructions(const void *record)
+{
+    const BenchRow *row = record;
+    return row->instructions / row->cycles;
+}
+
 static double ratio(const void *record)
 {
     const BenchRow *row = record;
@@ -190,6 +207,7 @@ enum { PAGE = 1 << BENCH_GRID_MARKDOWN | LATEX, EVERY = PLAIN | PAGE };
 #define STEPS      .shown[BENCH_TABLE_STEPS]
 #define FRAMES     .shown[BENCH_TABLE_FRAMES]
 #define CHANGES    .shown[BENCH_TABLE_CHANGES]
+#define COUNTERS   .shown[BENCH_TABLE_COUNTERS]
 #define BOTH_STEPS LATTICES = EVERY, STEPS = EVERY
 
 #define PLACE(type, member)                                                                        \
@@ -198,6 +216,8 @@ enum { PAGE = 1 << BENCH_GRID_MARKDOWN | LATEX, EVERY = PLAIN | PAGE };
 #define COLUMN(title)       .field.column = title
 #define TITLE(text)         .field.title = text
 #define TIME(title)         .field.column = title, .field.timed = timed
+#define LATER               .later = true
+#define COUNTER(title)      LATER, .field.column = title, .field.timed = checked
 #define MEANS(unit_, words) .field.unit = unit_, .field.meaning = words
 #define PAPER(member, how)  .paper = offsetof(RefPaperRow, member), .below = how
 

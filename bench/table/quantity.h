@@ -16,11 +16,13 @@ typedef enum {
     BENCH_TABLE_STEPS,    /* with rows of octrees, or of that paper */
     BENCH_TABLE_FRAMES,   /* of meshless bodies */
     BENCH_TABLE_CHANGES,  /* of scenes that change while they run */
+    BENCH_TABLE_COUNTERS, /* what the processor counted, of any row */
     BENCH_TABLES
 } BenchTableKind;
 
 typedef struct {
     BenchField field;  /* of BenchRow */
+    bool later;        /* files from before it was added lack it */
     bool elastic;      /* stored in the row's group "elastic", of meshless bodies */
     const char *stage; /* it is the time of this (bench_quantity_stage()); NULL: of none */
     bool samples;      /* in CSV and JSON all of `total`, in ms; in files a dataset */

@@ -66,6 +66,7 @@ void bench_row_columns(const BenchRow *rows, int count, BenchTableKind table, Be
 /* What stands for the table's times of a row; NULL: they do. */
 static const char *time_mark(const BenchRow *row, BenchTableKind table)
 {
+    if (table == BENCH_TABLE_COUNTERS) return row->valid ? NULL : bench_row_mark(row);
     if (table != BENCH_TABLE_CHANGES) return bench_row_timed(row) ? NULL : bench_row_mark(row);
     return !row->valid ? "INVALID" : bench_row_frames_busy(row) ? "BUSY" : NULL;
 }
@@ -132,6 +133,7 @@ void bench_row_lines(const BenchRow *row, BenchTableKind table, BenchGridForm fo
 {
     const RefPaperRow *paper = ref_paper_find(row->paper, row->paper_row);
     measured_line(row, table, form, grid);
-    if (paper && (table != BENCH_TABLE_FRAMES || isfinite(paper->nodes.value)))
+    if (paper && table != BENCH_TABLE_COUNTERS &&
+        (table != BENCH_TABLE_FRAMES || isfinite(paper->nodes.value)))
         paper_line(paper, form, grid);
 }

@@ -30,21 +30,19 @@ static void begin_table(BenchReport *report, bool elastic)
     bench_grid_head(report->file, &report->grid, report->form);
 }
 
-/* Rows that change have a second table, below the table of steps that they belong to. */
-static void write_changes(const BenchReport *report)
+/* A second table of rows that are in the first: of those that change, below the table of steps that
+ * they belong to, and what was counted, of all. */
+static void write_more(const BenchReport *report, BenchTableKind table, const char *heading)
 {
     BenchGrid grid = {0};
     for (int r = 0; r < report->written; r++) {
-        if (report->rows[r].change.frames == 0) continue;
-        if (!grid.lines) bench_row_columns(NULL, 0, BENCH_TABLE_CHANGES, report->form, &grid);
-        bench_row_lines(&report->rows[r], BENCH_TABLE_CHANGES, report->form, &grid);
+        if (table == BENCH_TABLE_CHANGES && report->rows[r].change.frames == 0) continue;
+        if (!grid.lines) bench_row_columns(NULL, 0, table, report->form, &grid);
+        bench_row_lines(&report->rows[r], table, report->form, &grid);
     }
     if (!grid.lines) return;
     fputc('\n', report->file);
-    if (report->form == BENCH_GRID_PLAIN)
-        fputs("While they change: nodes at first and at most; simulation is the time of a frame "
-              "before the\nfirst change and after the last.\n\n",
-              report->file);
+    if (report->form == BENCH_GRID_PLAIN) fputs(heading, report->file);
     bench_grid_whole(report->file, &grid, report->form);
     bench_grid_free(&grid);
 }
@@ -53,7 +51,10 @@ static void end_table(BenchReport *report)
 {
     if (!report->written) return;
     bench_grid_end(report->file, report->form);
-    if (!bench_row_of_elastic(&report->rows[report->written - 1])) write_changes(report);
+    if (!bench_row_of_elastic(&report->rows[report->written - 1]))
+        write_more(report, BENCH_TABLE_CHANGES,
+                   "While they change: nodes at first and at most; simulation is the time of a "
+                   "frame before the\nfirst change and after the last.\n\n");
     bench_grid_free(&report->grid);
 }
 
@@ -77,6 +78,9 @@ void bench_report_rows(BenchReport *report, int measured)
 void bench_report_end(BenchReport *report, bool explain)
 {
     end_table(report);
+    if (report->counters)
+        write_more(report, BENCH_TABLE_COUNTERS,
+                   "Counted in one step, in user mode, of all threads; medians.\n\n");
     if (report->form != BENCH_GRID_PLAIN || !report->written) return;
     fputc('\n', report->file);
     (explain ? bench_explain_rows : bench_explain_briefly)(report->file, report->rows,

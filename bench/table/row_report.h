@@ -14,6 +14,7 @@ typedef struct {
                            * and engine need be there */
     int count;
     const BenchMachine *machine;
+    bool counters;  /* a table of these at the end */
     int written;    /* rows so far; begins at 0 */
     BenchGrid grid; /* the table that is being written; begins zeroed */
 } BenchReport;

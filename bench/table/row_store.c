@@ -63,6 +63,9 @@ void bench_store_row(BenchH5 *h5, hid_t parent, int index, const BenchRow *row)
     hsize_t size[] = {(hsize_t)row->repeats, SM_STAGES};
     bench_h5_dataset(h5, group, "total", H5T_IEEE_F64LE, 1, size, row->total);
     bench_h5_dataset(h5, group, "stage", H5T_IEEE_F64LE, 2, size, row->stage);
+    hsize_t counters[] = {(hsize_t)row->repeats, BENCH_COUNTERS};
+    if (bench_row_counted(row))
+        bench_h5_dataset(h5, group, "counters", H5T_IEEE_F64LE, 2, counters, row->counter);
     hsize_t frames[] = {(hsize_t)row->change.frames, BENCH_FRAME_PARTS};
     if (row->change.frames)
         bench_h5_dataset(h5, group, "frames", H5T_IEEE_F64LE, 2, frames, row->change.time);
@@ -85,13 +88,28 @@ static void *read_samples(BenchH5 *h5, hid_t group, const char *name, long count
     return values;
 }
 
+/* What an older file lacks is NaN, or "" as in the zeroed row. */
+static void read_later(BenchH5 *h5, hid_t group, const BenchField *field, BenchRow *row)
+{
+    if (field->kind == BENCH_DOUBLE) *(double *)(void *)((char *)row + field->offset) = NAN;
+    bench_h5_read_what_is_there(h5, group, field, 1, row);
+}
+
 static void read_quantities(BenchH5 *h5, hid_t group, BenchRow *row, bool elastic)
 {
     int count;
     const BenchQuantity *quantity = bench_quantities(&count);
     for (int q = 0; q < count; q++)
-        if (quantity[q].elastic == elastic)
+        if (quantity[q].elastic == elastic && quantity[q].later)
+            read_later(h5, group, &quantity[q].field, row);
+        else if (quantity[q].elastic == elastic)
             bench_h5_read_fields(h5, group, &quantity[q].field, 1, row);
+}
+
+static void read_counters(BenchH5 *h5, hid_t group, BenchRow *row)
+{
+    if (!h5->failed && bench_row_counted(row))
+        row->counter = read_samples(h5, group, "counters", row->repeats, BENCH_COUNTERS);
 }
 
 void bench_store_read_row(BenchH5 *h5, hid_t parent, int index, BenchRow *row)
@@ -102,6 +120,7 @@ void bench_store_read_row(BenchH5 *h5, hid_t parent, int index, BenchRow *row)
     read_quantities(h5, group, row, false);
     row->total = read_samples(h5, group, "total", row->repeats, 0);
     row->stage = read_samples(h5, group, "stage", row->repeats, SM_STAGES);
+    read_counters(h5, group, row);
     if (row->change.frames)
         row->change.time = read_samples(h5, group, "frames", row->change.frames, BENCH_FRAME_PARTS);
     if (!h5->failed && H5Lexists(group, "elastic", H5P_DEFAULT) > 0)
@@ -198,6 +217,7 @@ static void read_times(BenchH5 *h5, hid_t group, BenchRow *row)
         if (!isfinite(row->total[r]) || row->total[r] <= 0)
             bench_h5_fail(h5, "dataset 'total' holds %g s", row->total[r]);
     if (!h5->failed) read_stages(h5, group, row);
+    read_counters(h5, group, row);
 }
 
 /* A failure's message is preceded by the row. */
@@ -212,7 +232,9 @@ static void read_what_is_there(BenchH5 *h5, hid_t parent, int index, BenchRow *r
     const BenchQuantity *quantity = bench_quantities(&count);
     for (int q = 0; q < count; q++) {
         const BenchField *field = &quantity[q].field;
-        if (field->name && !quantity[q].of && bench_field_values(field) == 1)
+        if (field->name && quantity[q].later)
+            read_later(h5, group, field, row);
+        else if (field->name && !quantity[q].of && bench_field_values(field) == 1)
             bench_h5_read_what_is_there(h5, group, field, 1, row);
     }
     read_times(h5, group, row);

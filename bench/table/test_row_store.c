@@ -36,6 +36,9 @@ static void fill_samples(BenchRow *row, int seed)
 {
     row->total = sm_alloc(REPEATS, sizeof *row->total);
     row->stage = sm_alloc(REPEATS, sizeof *row->stage);
+    if (bench_row_counted(row)) row->counter = sm_alloc(REPEATS, sizeof *row->counter);
+    for (int i = 0; i < REPEATS && row->counter; i++)
+        for (int c = 0; c < BENCH_COUNTERS; c++) row->counter[i][c] = 1000 * i + c + seed;
     if (row->change.frames) row->change.time = sm_alloc(FRAMES, sizeof *row->change.time);
     for (int f = 0; f < row->change.frames; f++)
         for (int i = 0; i < BENCH_FRAME_PARTS; i++) row->change.time[f][i] = 1e-6 * (10 * f + i);
@@ -57,6 +60,7 @@ static void fill_row(BenchRow *row, int seed)
     }
     row->repeats = REPEATS;
     row->change.frames = seed % 2 ? FRAMES : 0;
+    if (seed % 2) row->cycles = row->instructions = row->cache_misses = row->branch_misses = NAN;
     row->paper_stage_ms[3] = NAN;
     memset(row->reason, 'r', sizeof row->reason - 1); /* the longest there can be */
     fill_samples(row, seed);
@@ -64,16 +68,19 @@ static void fill_row(BenchRow *row, int seed)
 
 static void compare_rows(const BenchRow *a, const BenchRow *b)
 {
-    /* All but the two pointers bit for bit: both records were zeroed, padding included. */
+    /* All but the pointers bit for bit: both records were zeroed, padding included. */
     BenchRow left, right;
     memcpy(&left, a, sizeof left);
     memcpy(&right, b, sizeof right);
     left.total = right.total = NULL;
     left.stage = right.stage = NULL;
+    left.counter = right.counter = NULL;
     left.change.time = right.change.time = NULL;
     assert_memory_equal(&left, &right, sizeof left);
     assert_memory_equal(a->total, b->total, REPEATS * sizeof *a->total);
     assert_memory_equal(a->stage, b->stage, REPEATS * sizeof *a->stage);
+    assert_true(!a->counter == !b->counter);
+    if (a->counter) assert_memory_equal(a->counter, b->counter, REPEATS * sizeof *a->counter);
     if (a->change.frames)
         assert_memory_equal(a->change.time, b->change.time, FRAMES * sizeof *a->change.time);
 }
@@ -110,6 +117,12 @@ static void read_samples(BenchH5 *h5, hid_t group, BenchRow *row)
                   row->total);
     bench_h5_read(h5, bench_h5_find_dataset(h5, group, "stage", 2, stages), H5T_NATIVE_DOUBLE,
                   row->stage);
+    if (bench_row_counted(row)) {
+        const hsize_t counters[] = {REPEATS, BENCH_COUNTERS};
+        row->counter = sm_alloc(REPEATS, sizeof *row->counter);
+        bench_h5_read(h5, bench_h5_find_dataset(h5, group, "counters", 2, counters),
+                      H5T_NATIVE_DOUBLE, row->counter);
+    }
     if (row->change.frames == 0) return;
     row->change.time = sm_alloc(FRAMES, sizeof *row->change.time);
     bench_h5_read(h5, bench_h5_find_dataset(h5, group, "frames", 2, frames), H5T_NATIVE_DOUBLE,
@@ -210,6 +223,41 @@ TEST(statuses_of_the_paper_are_stored)
         bench_row_free(&row);
         unlink(path);
     }
+}
+
+/* Deletes what files from before it was added lack. */
+static void make_older(const char *path)
+{
+    int count;
+    const BenchQuantity *quantity = bench_quantities(&count);
+    hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
+    hid_t group = H5Gopen2(file, "rows/000", H5P_DEFAULT);
+    assert_true(group >= 0);
+    for (int q = 0; q < count; q++)
+        if (quantity[q].later && quantity[q].field.name)
+            assert_true(H5Adelete(group, quantity[q].field.name) >= 0);
+    assert_true(H5Ldelete(group, "counters", H5P_DEFAULT) >= 0);
+    H5Gclose(group);
+    H5Fclose(file);
+}
+
+TEST(older_files_are_read_without_what_they_lack)
+{
+    const char *path = path_in("older.h5");
+    BenchRow row = {0};
+    BenchH5 h5;
+    for (int older = 0; older < 2; older++) {
+        write_file(path);
+        if (older) make_older(path);
+        bench_h5_open(&h5, path);
+        bench_store_read_row(&h5, bench_h5_find_group(&h5, h5.file, "rows"), 0, &row);
+        if (!bench_h5_close(&h5)) fail_msg("%s", h5.message);
+        assert_int_equal(row.repeats, REPEATS);
+        assert_true(older ? isnan(row.cycles) && !row.isa[0] : row.cycles > 0 && row.isa[0]);
+        assert_true(older ? !row.counter : row.counter[6][1] == 6001);
+        bench_row_free(&row);
+    }
+    unlink(path);
 }
 
 TEST(no_rows)

@@ -13,7 +13,9 @@ static const char header[] =
     "damping_ms,other_ms,total_ms,ns_per_particle_step,paper_total_ms,ratio,valid,fps,"
     "speedup,summation_nodes,last_particles,frame_ms,last_frame_ms,resampling_ms,"
     "most_resampling_ms,splitting_ms,surface_ms,nodes,modes,matrices_s,modes_s,total_low_ms,"
-    "total_high_ms,steps,busy,lost_percent,load,samples_ms";
+    "total_high_ms,steps,busy,lost_percent,load,samples_ms,surface_bytes,isa,state_hash,cycles,"
+    "instructions,"
+    "cache_misses,branch_misses";
 
 static double seconds[] = {13e-6, 14e-6, 15e-6};
 
@@ -88,6 +90,8 @@ static void fill_octree_row(BenchRow *row)
                       .found = "goals as the check has found them"};
 }
 
+static bool counters; /* with their table */
+
 /* All rows at once, or one at a time; the caller frees the text. */
 static char *write_rows(BenchFormat format, const BenchRow *rows, int count, bool explain,
                         bool at_once)
@@ -101,7 +105,8 @@ static char *write_rows(BenchFormat format, const BenchRow *rows, int count, boo
     BenchTable table = {
         .format = format,
         .explain = explain,
-        .report = {.file = file, .rows = rows, .count = count, .machine = &machine}};
+        .report = {
+            .file = file, .rows = rows, .count = count, .machine = &machine, .counters = counters}};
     for (int r = at_once ? count : 1; r <= count; r++) {
         bench_table_rows(&table, r);
         fflush(file);
@@ -260,6 +265,14 @@ TEST(a_row_is_written_when_it_is_measured)
     }
 }
 
+static void count(BenchRow *row, double scale)
+{
+    row->cycles = 45e3 * scale;
+    row->instructions = 90e3 * scale;
+    row->cache_misses = 0 * scale;
+    row->branch_misses = 12.5 * scale;
+}
+
 TEST(text_fits_100_characters)
 {
     BenchRow rows[3];
@@ -276,7 +289,10 @@ TEST(text_fits_100_characters)
             strcpy(row->engine, "meshless");
             row->particles = 1370620;
         }
+        count(row, 9999);
+        counters = true;
         char *text = write_rows(BENCH_AS_TEXT, row, 1, false, true);
+        counters = false;
         for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n"))
             if (strlen(line) > 100) fail_msg("%zu characters: %s", strlen(line), line);
         free(text);
@@ -438,6 +454,36 @@ TEST(what_changes_has_a_table_of_its_own)
             if (format == BENCH_AS_LATEX) assert_non_null(strstr(text, " & 501 $\\to$ 1548 & "));
             if (!valid) assert_null(strstr(text, "0.25"));
             assert_null(strstr(text, "could not follow"));
+            free(text);
+        }
+}
+
+/* Of all rows, whether they have times or not; an invalid one has none. */
+TEST(what_was_counted_has_a_table_of_its_own)
+{
+    static const char *const known[] = {
+        "\npenguin          45000        300         90000     2.00             0           12.5\n",
+        "\n| penguin | 45000 | 300 | 90000 | 2.00 | 0 | 12.5 |\n", "avx2,,45000,90000,0,12.5,",
+        "\npenguin & 45000 & 300 & 90000 & 2.00 & 0 & 12.5 \\\\\n",
+        "\"state_hash\": \"\",\n      \"cycles\": 45000.0,"};
+    static const char *const unknown[] = {
+        "\npenguin              -          -             -        -             -              -\n",
+        "\n| penguin | - | - | - | - | - | - |\n", "avx2,,,,,,",
+        "\npenguin & - & - & - & - & - & - ", "\"state_hash\": \"\",\n      \"cycles\": null,"};
+    for (int c = 0; c < 2; c++)
+        for (BenchFormat format = BENCH_AS_TEXT; format <= BENCH_AS_JSON; format++) {
+            BenchRow rows[2];
+            const char *wanted = (c ? known : unknown)[format];
+            make_rows(rows);
+            count(&rows[0], c ? 1 : NAN);
+            count(&rows[1], 777);
+            rows[0].busy = true; /* without times */
+            strcpy(rows[0].isa, "avx2");
+            counters = true;
+            char *text = write_rows(format, rows, 2, false, true);
+            counters = false;
+            if (!strstr(text, wanted)) fail_msg("no \"%s\" in:\n%s", wanted, text);
+            assert_null(strstr(text, "34965000")); /* 45e3 * 777 */
             free(text);
         }
 }

@@ -3,7 +3,7 @@
 
 #include "../../lib/test_folder.h"
 #include "../../lib/test_frame.h"
-#include "counts.h"
+#include "callgrind.h"
 
 /* A program whose start takes 10^5 rounds of a loop and each step WORK; with the step -1 it dies.
  */
@@ -37,7 +37,6 @@ static SmCode count(const char *old, const char *new, double counted[BENCH_BUILD
     char path[BENCH_BUILDS][256];
     BenchProgress progress = {0};
     BenchAbSamples all = {0};
-    const char *tool;
     const BenchTask task = {.scene = "penguin"};
     snprintf(path[BENCH_OLD], 256, "%s", path_in(old));
     snprintf(path[BENCH_NEW], 256, "%s", path_in(new));
@@ -47,7 +46,7 @@ static SmCode count(const char *old, const char *new, double counted[BENCH_BUILD
                                   .folder = folder,
                                   .progress = &progress};
     add(&all);
-    SmCode code = bench_counts_take(&rounds, &all, &tool, error);
+    SmCode code = bench_callgrind_count(&rounds, &all, error);
     for (int b = 0; b < BENCH_BUILDS; b++) counted[b] = all.scenes[0].side[b].instructions;
     bench_ab_free(&all);
     return code;
