@@ -10,6 +10,7 @@
 #include "../scene/slice.h"
 #include "../store/draft.h"
 #include "command.h"
+#include "machine_info.h"
 
 typedef struct {
     BenchCommon common;
@@ -56,7 +57,8 @@ static void check(const struct argp_state *state, void *record)
     if (options->slice && !bench_slice_parse(options->slice, &options->plane))
         bench_usage(state, "--slice: '%.40s' is not x=SHARE, y=SHARE or z=SHARE, 0 to 1",
                     options->slice);
-    if (!options->common.words) bench_usage(state, "which MESH?");
+    if (!options->common.words && (options->slice || options->particles))
+        bench_usage(state, "which MESH?");
     if (!options->slice != !options->output || (options->overwrite && !options->slice))
         bench_usage(state, "--slice and --output go together, and --overwrite with both");
     if (options->slice && (options->common.words > 1 || options->format || options->particles))
@@ -64,12 +66,15 @@ static void check(const struct argp_state *state, void *record)
 }
 
 static const char help[] =
-    "Say what is in mesh files (OBJ, PLY, STL, OFF, glTF and what else Assimp reads, or "
+    "Without a mesh, say what this machine and this program are: processor, caches, cores, "
+    "instruction sets, compiler, libraries, and whether the processor's counters can be read. Else "
+    "say what is in mesh files (OBJ, PLY, STL, OFF, glTF and what else Assimp reads, or "
     "shape:NAME): triangles, vertices, components, edges that are open, shared by more than two "
     "triangles or flipped, bounding box, volume (of closed ones), and whether it can be simulated "
     "as a solid.\v"
     "With several meshes each gets its say; the exit code is that of the last one that cannot be "
-    "read. --format json prints one array with an object for every mesh.\n" BENCH_EXIT_CODES;
+    "read. --format json prints one array with an object for every mesh, or one object of the "
+    "machine.\n" BENCH_EXIT_CODES;
 
 static SmCode look(const char *name, long particles, Facts *facts, SmError *error)
 {
@@ -187,10 +192,15 @@ static void warn_of_freedom(const char *program)
 static SmCode perform(void *record, int argc, char **argv, SmError *error)
 {
     const Options *options = record;
-    (void)argc;
+    bool json = options->format && !strcmp(options->format, "json");
+    if (!options->common.words) {
+        BenchMachine machine;
+        bench_machine_read(argc, argv, options->common.threads, &machine);
+        bench_machine_info(&machine, json);
+        return SM_OK;
+    }
     if (!options->common.quiet) warn_of_freedom(argv[0]);
     if (options->slice) return cut_slice(options, error);
-    bool json = options->format && !strcmp(options->format, "json");
     long particles = options->particles ? options->particles : 2000;
     SmCode code = SM_OK;
     json_t *list = json_array();
@@ -218,8 +228,9 @@ static SmCode perform(void *record, int argc, char **argv, SmError *error)
 
 const BenchCommand bench_command_info = {
     .name = "info",
-    .summary = "say what is in a mesh, and whether it can be simulated",
-    .line = {settings, BENCH_TAKES_QUIET | BENCH_TAKES_THREADS, "MESH...", help, check, .most = -1},
+    .summary = "say what is in a mesh, or, alone, what this machine has",
+    .line = {settings, BENCH_TAKES_QUIET | BENCH_TAKES_THREADS, "[MESH...]", help, check,
+             .most = -1},
     .size = sizeof(Options),
     .perform = perform,
 };

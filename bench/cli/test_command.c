@@ -156,7 +156,7 @@ TEST(files_that_cannot_be_used_are_named)
 TEST(mistakes_of_other_commands_are_too)
 {
     static const Mistake cases[] = {
-        {"info", 2, "which MESH?"},
+        {"info --particles 9", 2, "which MESH?"},
         {"info missing.obj", 3, "missing.obj"},
         {"info --format xml a.obj", 2, "'xml' is not one of text, json"},
         {"scenes no-such", 2, "'no-such' is not a built-in scene"},
@@ -224,6 +224,29 @@ TEST(help_is_everywhere)
     run("--version", &result);
     assert_int_equal(result.code, 0);
     assert_memory_equal(result.out, "shapebench ", 11);
+}
+
+TEST(the_machine_is_described)
+{
+    static const char *const wanted[] = {
+        "\n  processor     ", "\n  caches        ", "\n  counters      ",     "\n  Valgrind      ",
+        "\n  compiler      ", "(in use)",           "\n  libraries     HDF5 "};
+    Result result;
+    run("info", &result);
+    assert_int_equal(result.code, 0);
+    assert_string_equal(result.err, "");
+    for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++)
+        if (!strstr(result.out, wanted[i])) fail_msg("no '%s' in\n%s", wanted[i], result.out);
+    run("info --format json --threads 2", &result);
+    json_t *root = json_loads(result.out, 0, NULL), *isas = json_object_get(root, "isas"), *isa;
+    size_t i, in_use = 0;
+    json_array_foreach(isas, i, isa) in_use += json_is_true(json_object_get(isa, "in_use"));
+    assert_int_equal(in_use, 1);
+    json_t *environment = json_object_get(root, "environment");
+    assert_int_equal(json_integer_value(json_object_get(environment, "threads")), 2);
+    const char *counters = json_string_value(json_object_get(environment, "counters"));
+    assert_true(!strncmp(counters, "none: ", 6) || !strncmp(counters, "cycles", 6));
+    json_decref(root);
 }
 
 TEST(a_scene_can_be_copied_and_run)

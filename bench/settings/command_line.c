@@ -11,15 +11,20 @@
 #include "../system/suggest.h"
 #include "provenance.h"
 
-static void print_version(FILE *file, struct argp_state *state)
+void bench_print_isas(FILE *file)
 {
-    (void)state;
-    fputs("shapebench " SHAPEBENCH_VERSION "\ninstruction sets:", file);
     for (int isa = 0; isa < sm_isa_count(); isa++)
-        fprintf(file, " %s%s", sm_isa_name(isa),
+        fprintf(file, "%s%s%s", isa ? " " : "", sm_isa_name(isa),
                 isa == sm_isa()     ? " (in use)"
                 : sm_isa_there(isa) ? ""
                                     : " (not of this processor)");
+}
+
+static void print_version(FILE *file, struct argp_state *state)
+{
+    (void)state;
+    fputs("shapebench " SHAPEBENCH_VERSION "\ninstruction sets: ", file);
+    bench_print_isas(file);
     fputc('\n', file);
 }
 

@@ -43,6 +43,9 @@ void bench_options_parse(const BenchCommandLine *line, int argc, char **argv, vo
 void bench_option_words(const struct argp *argp, int argc, char **argv, unsigned flags, int *first,
                         void *input);
 
+/* "sse2 avx2 (in use) avx512 (not of this processor)": the kernels' (lib/isa.h). */
+void bench_print_isas(FILE *file);
+
 /* Prints "program command: line", of SM_USAGE with where to look it up. */
 void bench_option_fail(const char *name, const SmError *error);
 
