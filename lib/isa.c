@@ -15,14 +15,18 @@ static bool always(void)
     return true;
 }
 
-#if defined(__AVX512F__) && defined(__AVX512VL__)
+#ifdef SM_SCALAR
+#define NATIVE "portable"
+#elif defined(__AVX512F__) && defined(__AVX512VL__)
 #define NATIVE "avx512"
 #elif defined(__AVX2__)
 #define NATIVE "avx2"
 #elif defined(__SSE2__)
 #define NATIVE "sse2"
-#elif defined(__ARM_NEON)
+#elif defined(__ARM_NEON) && defined(__aarch64__)
 #define NATIVE "neon"
+#elif defined(__wasm_simd128__)
+#define NATIVE "simd128"
 #else
 #define NATIVE "portable"
 #endif

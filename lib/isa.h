@@ -1,10 +1,11 @@
 /* isa.h - the instruction sets that the kernels are compiled for, and the one that is in use.
  *
- * Kernels are one source (lib/simd/lanes.h), compiled once for each set of the processor's family,
- * or for the building machine alone (SHAPEBENCH_NATIVE). What others call of them are tables of
- * functions, one for each set; a table of the same name without a suffix holds those in use. Before
- * main() these are those of the best set that the processor has, or that the environment variable
- * SHAPEBENCH_ISA names. */
+ * Kernels are one source (lib/simd/lanes.h), compiled once for each set of x86-64 (sse2, avx2,
+ * avx512), or for one alone: the building machine's (SHAPEBENCH_NATIVE), that of another family
+ * (neon, simd128), or none (portable: another family still, or SHAPEBENCH_SCALAR). What others call
+ * of them are tables of functions, one for each set; a table of the same name without a suffix
+ * holds those in use. Before main() these are those of the best set that the processor has, or that
+ * the environment variable SHAPEBENCH_ISA names. */
 #ifndef SM_ISA_H
 #define SM_ISA_H
 

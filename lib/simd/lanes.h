@@ -1,8 +1,8 @@
 /* lanes.h - small operations on vectors of lanes (real.h), one body for both precisions.
  *
  * Arithmetic and comparisons are the compiler's own. What it does badly is written for each
- * instruction set: lanes_avx512.h, lanes_avx2.h; lanes_portable.h is for the others, and says what
- * each does. */
+ * instruction set: lanes_avx512.h, lanes_avx2.h; lanes_portable.h is for the others (lanes_sse2.h,
+ * lanes_neon.h, lanes_wasm.h), and says what each does. */
 #ifndef SM_LANES_H
 #define SM_LANES_H
 

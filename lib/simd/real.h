@@ -17,8 +17,11 @@
 #define SM_JOIN(name, precision, isa)  SM_JOIN_(name, precision, isa)
 #define SM_JOIN_(name, precision, isa) name##precision##isa
 
-/* The width of its vectors. */
-#if defined(__AVX512F__) && defined(__AVX512VL__)
+/* The width of its vectors; with SM_SCALAR that of the narrowest, and what the compiler does not
+ * know of them is done lane by lane. */
+#ifdef SM_SCALAR
+#define SM_VECTOR_BYTES 16
+#elif defined(__AVX512F__) && defined(__AVX512VL__)
 #define SM_VECTOR_BYTES 64
 #elif defined(__AVX2__)
 #define SM_VECTOR_BYTES 32

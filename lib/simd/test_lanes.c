@@ -151,6 +151,20 @@ TEST(roots_and_inverses_are_as_exact_as_promised)
     }
 }
 
+/* Fused, their last bits would be left. */
+TEST(products_are_rounded_before_they_are_used)
+{
+    unsigned seed = 4;
+    for (int trial = 0; trial < TRIALS; trial++) {
+        vec a = random_vec(&seed), b = random_vec(&seed), product;
+        for (int i = 0; i < SM_LANES; i++) {
+            volatile real once = a[i] * b[i];
+            product[i] = once;
+        }
+        check(lanes_rounded(a * b) - product, lanes_set(0));
+    }
+}
+
 static void check_slide(vec slid, int o)
 {
     for (int i = 0; i < SM_LANES; i++) assert_true(slid[i] == o + i);
@@ -168,6 +182,21 @@ TEST(vectors_slide_by_any_number_of_lanes)
     check_slide(lanes_slide(low, high, SM_LANES - 2), SM_LANES - 2);
     check_slide(lanes_slide(low, high, SM_LANES - 1), SM_LANES - 1);
     check_slide(lanes_slide(low, high, SM_LANES), SM_LANES);
+    unsigned seed = 6;
+    for (int trial = 0; trial < TRIALS; trial++) { /* whatever they hold */
+        const vec from[2] = {special_vec(&seed), special_vec(&seed)};
+        const volatile int o = random_int(&seed, SM_LANES + 1);
+        vec slid = lanes_slide(from[0], from[1], o);
+        assert_memory_equal(&slid, (const real *)from + o, sizeof slid);
+    }
+}
+
+static void check_part(part_vec part, const real *from, unsigned lanes)
+{
+    for (int i = 0; i < SM_PART; i++) {
+        real found = part[i], wanted = lanes >> i & 1 ? from[i] : 0;
+        assert_memory_equal(&found, &wanted, sizeof found);
+    }
 }
 
 /* An array between two pages that nobody may read. */
@@ -179,32 +208,31 @@ TEST(parts_of_vectors_read_what_is_asked_for_alone)
     assert_int_equal(mprotect(pages, page, PROT_NONE), 0);
     assert_int_equal(mprotect(pages + 2 * page, page, PROT_NONE), 0);
     real *first = (real *)(pages + page), *end = (real *)(pages + 2 * page);
-    number(first, (int)(end - first));
+    unsigned seed = 7;
+    for (real *p = first; p < end; p += SM_LANES) lanes_store(p, special_vec(&seed));
     for (int out = 0; out <= SM_PART; out++) { /* lanes beyond the end, or before the start */
         const unsigned all = (1u << SM_PART) - 1;
         unsigned inside = all >> out, after = all << out & all;
         part_vec low = part_load(end - SM_PART + out, inside), high = part_load(first - out, after);
-        for (int i = 0; i < SM_PART; i++) {
-            real at_end = i + out < SM_PART ? end[i + out - SM_PART] : 0;
-            assert_true(low[i] == at_end);
-            assert_true(high[i] == (i >= out ? first[i - out] : 0));
-        }
-        vec joined = lanes_join((part_vec[2]){low, high});
-        for (int i = 0; i < SM_LANES; i++)
-            assert_true(joined[i] == (i < SM_PART ? low[i] : high[i - SM_PART]));
+        check_part(low, end - SM_PART + out, inside);
+        check_part(high, first - out, after);
+        const part_vec parts[2] = {low, high};
+        vec joined = lanes_join(parts);
+        assert_memory_equal(&joined, parts, sizeof joined);
     }
     munmap(pages, 3 * page);
 }
 
 TEST(interleaved_vectors_are_rows_of_lanes)
 {
+    unsigned seed = 8;
     for (int n = 1; n <= 16; n *= 2) {
         vec m[16], was[16];
         real row[16 * SM_LANES];
-        for (int i = 0; i < n; i++) was[i] = m[i] = lanes_number() * 100 + lanes_set((real)i);
+        for (int i = 0; i < n; i++) was[i] = m[i] = special_vec(&seed);
+        for (int i = 0; i < n * SM_LANES; i++) row[i] = was[i % n][i / n];
         lanes_interleave(m, n);
-        memcpy(row, m, sizeof *m * (size_t)n);
-        for (int i = 0; i < n * SM_LANES; i++) assert_true(row[i] == i / n * 100 + i % n);
+        assert_memory_equal(m, row, sizeof *m * (size_t)n);
         lanes_separate(m, n);
         assert_memory_equal(m, was, sizeof *m * (size_t)n);
     }
