@@ -412,7 +412,7 @@ static void find_middles(const SmEngine *e, long first, long end, double middle[
 static void move_origins(SmEngine *e, long body, long first, long end, double middle[SM_LANES][3])
 {
     Lsm *lsm = e->lsm;
-    vec by[3];
+    real by[3][SM_LANES];
     for (int lane = 0; lane < SM_LANES; lane++)
         for (int d = 0; d < 3; d++) by[d][lane] = (real)middle[lane][d];
     for (int lane = 0; lane < (e->bodies > 1 ? SM_LANES : 1); lane++) {
@@ -423,7 +423,7 @@ static void move_origins(SmEngine *e, long body, long first, long end, double mi
         const ParticleConst *k = &lsm->particle_const[lsm->block_const[block]];
         for (int d = 0; d < 3; d++) {
             real *x = lsm->x + (block * 3 + d) * SM_LANES;
-            lanes_store(x, lanes_load(x) - lanes_and(by[d], k->inverse_count > 0));
+            lanes_store(x, lanes_load(x) - lanes_and(lanes_load(by[d]), k->inverse_count > 0));
         }
     }
 }

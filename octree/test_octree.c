@@ -3,6 +3,8 @@
 #include "../fastlsm/fastlsm.h"
 #include "test_octree_body.h"
 
+#include <limits.h>
+
 #define SINGLE (SM_REAL_BITS == 32)
 
 /* Largest deviation of goal positions, in finest cells. */
@@ -413,13 +415,14 @@ static double dent(double creep, double *volume)
         memset(oct->body->v, 0, (size_t)oct->blocks * 3 * SM_LANES * sizeof(real));
     }
     get_x(oct, body.a);
-    double low = INFINITY, high = -INFINITY, rest_low = INFINITY, rest_high = -INFINITY;
+    double low = INFINITY, high = -INFINITY;
+    int rest_low = INT_MAX, rest_high = INT_MIN;
     for (long i = 0; i < body.n; i++) {
-        double y0 = 0.5 * body.tree.centre[body.tree.node[i]][1];
+        int y0 = body.tree.centre[body.tree.node[i]][1];
         low = fmin(low, body.a[i][1]);
         high = fmax(high, body.a[i][1]);
-        rest_low = fmin(rest_low, y0);
-        rest_high = fmax(rest_high, y0);
+        rest_low = y0 < rest_low ? y0 : rest_low;
+        rest_high = y0 > rest_high ? y0 : rest_high;
     }
     *volume = 0; /* largest |det S - 1| */
     for (long i = 0; i < body.n && creep > 0; i++) {
@@ -432,7 +435,7 @@ static double dent(double creep, double *volume)
     }
     oct_free(oct);
     body_free(&body);
-    return 1 - (high - low) / (rest_high - rest_low);
+    return 1 - (high - low) / (0.5 * (rest_high - rest_low));
 }
 
 TEST(test_plastic)

@@ -28,14 +28,6 @@ function(optional_library name program without)
   endif()
 endfunction()
 
-pkg_search_module(MPI QUIET mpi-c ompi-c mpich)
-optional_library(mpi [[
-#include <mpi.h>
-int main(void) { return MPI_Init(0, 0); }]]
-  "No MPI: 'mpirun shapebench' will refuse; --shard and merge do without (libopenmpi-dev openmpi-bin)"
-  INCLUDES ${MPI_INCLUDE_DIRS} LIBRARIES ${MPI_LINK_LIBRARIES}
-  USED_BY bench/campaign/ranks.c SHAPEBENCH_MPI)
-
 pkg_check_modules(CMOCKA QUIET cmocka)
 optional_library(cmocka [[
 #include <stdarg.h>
@@ -46,6 +38,28 @@ optional_library(cmocka [[
 int main(void) { return cmocka_run_group_tests((const struct CMUnitTest *)0, 0, 0); }]]
   "No unit tests: install libcmocka-dev"
   INCLUDES ${CMOCKA_INCLUDE_DIRS} LIBRARIES ${CMOCKA_LINK_LIBRARIES})
+
+if(SHAPEBENCH_CORE)
+  pkg_check_modules(GSL QUIET gsl)
+  optional_library(gsl [[
+#include <gsl/gsl_linalg.h>
+int main(void) { return gsl_linalg_SV_decomp_jacobi((gsl_matrix *)0, 0, 0); }]]
+    "No unit tests: install libgsl-dev" INCLUDES ${GSL_INCLUDE_DIRS} LIBRARIES ${GSL_LINK_LIBRARIES})
+  if(NOT has_gsl)
+    set(has_cmocka OFF)
+  endif()
+  set(sources_left_out modes|solver|import|importer|mesh_files|mesh_text|polygon|recentre|reply|child|confine)
+  return()
+endif()
+set(pc_needs "assimp, gsl") # shapebench.pc.in
+
+pkg_search_module(MPI QUIET mpi-c ompi-c mpich)
+optional_library(mpi [[
+#include <mpi.h>
+int main(void) { return MPI_Init(0, 0); }]]
+  "No MPI: 'mpirun shapebench' will refuse; --shard and merge do without (libopenmpi-dev openmpi-bin)"
+  INCLUDES ${MPI_INCLUDE_DIRS} LIBRARIES ${MPI_LINK_LIBRARIES}
+  USED_BY bench/campaign/ranks.c SHAPEBENCH_MPI)
 
 pkg_check_modules(ARPACK QUIET arpack)
 find_path(CHOLMOD_INCLUDE cholmod.h PATH_SUFFIXES suitesparse)
@@ -61,7 +75,7 @@ int main(void) { dpstrf_(); return dsaupd_c != 0 && cholmod_start(0); }]]
   LIBRARIES ${ARPACK_LINK_LIBRARIES} ${CHOLMOD_LIBRARY} ${LAPACK_LIBRARY})
 if(has_modes) # sources that are not compiled
   set(sources_left_out modes_absent)
-  set(pc_modes ", arpack") # shapebench.pc.in
+  string(APPEND pc_needs ", arpack")
   set(pc_modes_libraries " -lcholmod -llapack")
 else()
   set(sources_left_out modes|solver)
@@ -75,5 +89,6 @@ int main(void) { return seccomp_load(seccomp_init(SCMP_ACT_ALLOW)); }]]
   INCLUDES ${SECCOMP_INCLUDE_DIRS} LIBRARIES ${SECCOMP_LINK_LIBRARIES}
   USED_BY lib/system/confine.c SHAPEBENCH_SECCOMP)
 if(has_seccomp)
-  set(pc_seccomp ", libseccomp") # shapebench.pc.in
+  string(APPEND pc_needs ", libseccomp")
 endif()
+string(APPEND sources_left_out |import_absent|references_absent)

@@ -1,5 +1,8 @@
 # What ctest runs: unit tests or fuzz targets and style checks, and the programs of scripts/.
-set(folders lib fastlsm octree reference bench)
+set(folders lib fastlsm octree)
+if(NOT SHAPEBENCH_CORE)
+  list(APPEND folders reference bench)
+endif()
 enable_testing()
 
 # Sets `engines` to what a test of bench/ is also linked with.
@@ -10,11 +13,11 @@ macro(engines_of source)
   endif()
 endmacro()
 
-# An executable of `source`, linked with everything.
+# An executable of `source`, linked with all that is tested.
 function(add_test_program name source)
   engines_of(${source})
   add_executable(test_${name} ${source})
-  target_link_libraries(test_${name} PRIVATE shapebench_flags cmocka ${engines} shapebench_bench)
+  target_link_libraries(test_${name} PRIVATE shapebench_flags cmocka ${engines} ${tested})
   target_compile_definitions(test_${name} PRIVATE
     SOURCE_DIR="${CMAKE_SOURCE_DIR}" BINARY_DIR="${CMAKE_BINARY_DIR}")
 endfunction()
@@ -46,7 +49,7 @@ function(add_unit_test source)
     set(folder reference)
   endif()
   string(REGEX REPLACE "^test_" "${folder}_" noun ${noun})
-  if(NOT noun MATCHES "${SHAPEBENCH_TESTS}")
+  if(NOT noun MATCHES "${SHAPEBENCH_TESTS}" OR source MATCHES "/test_(${sources_left_out})\\.c$")
     return()
   endif()
   file(STRINGS ${source} in_both_precisions REGEX SM_REAL_BITS)
@@ -141,7 +144,7 @@ function(add_script_test name script)
   set_tests_properties(${name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 900)
 endfunction()
 
-if(NOT SHAPEBENCH_SANITIZE)
+if(NOT SHAPEBENCH_SANITIZE AND NOT SHAPEBENCH_CORE)
   foreach(plot sweep slice calibration)
     add_script_test(plot_${plot} test_plot_${plot}.sh ${CMAKE_BINARY_DIR})
   endforeach()

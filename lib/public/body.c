@@ -16,11 +16,11 @@
 static const struct {
     const char *name;
     const SmEngineType *type[2]; /* by precision; NULL: it has none such */
-    const bool *built;           /* was there what it needs? NULL: it needs nothing */
+    const char *needs;
 } engines[] = {[SB_FASTLSM] = {"fastlsm", {&fastlsm_engine_f32, &fastlsm_engine_f64}, NULL},
                [SB_OCTREE] = {"octree", {&octree_engine_f32, &octree_engine_f64}, NULL},
-               [SB_BRUTE] = {"brute", {NULL, &ref_brute_engine}, NULL},
-               [SB_MESHLESS] = {"meshless", {NULL, &ref_meshless_engine}, &ref_solver_built}};
+               [SB_BRUTE] = {"brute", {NULL, &ref_brute_engine}, "GSL"},
+               [SB_MESHLESS] = {"meshless", {NULL, &ref_meshless_engine}, "CHOLMOD and ARPACK"}};
 
 const char *sb_engine_name(int engine)
 {
@@ -30,7 +30,8 @@ const char *sb_engine_name(int engine)
 
 int sb_engine_available(int engine)
 {
-    return sb_engine_name(engine) && (!engines[engine].built || *engines[engine].built);
+    return sb_engine_name(engine) && engines[engine].type[SB_DOUBLE]->create &&
+           (engine != SB_MESHLESS || ref_solver_built);
 }
 
 /* ---- creation */
@@ -61,9 +62,8 @@ static int check_engine(const sb_body_params *p, sb_error *error)
         return sm_refuse(error, SB_USAGE, "'engine' is %d: there is no such engine", p->engine);
     if (!sb_engine_available(p->engine))
         return sm_refuse(error, SB_INPUT,
-                         "the engine %s is not in this library, which was built without CHOLMOD "
-                         "and ARPACK",
-                         name);
+                         "the engine %s is not in this library, which was built without %s", name,
+                         engines[p->engine].needs);
     int code = sm_check_range(p->precision, SB_SINGLE, SB_DOUBLE, "precision", error);
     if (code) return code;
     const SmEngineType *type = engines[p->engine].type[p->precision];

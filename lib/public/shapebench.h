@@ -47,7 +47,8 @@
  * Engines. Two are fast, in single and double precision: "fastlsm" (Rivers and James 2007) and
  * "octree" (Steinemann, Otaduy and Gross 2008). Two are references, in double precision: "brute",
  * shape matching without fast sums, to check others by, and "meshless", an elastic solid (Guo and
- * Qin 2009), which a library that was built without CHOLMOD and ARPACK has not. What an engine does
+ * Qin 2009), which a library that was built without CHOLMOD and ARPACK has not. One that is the
+ * core alone (SHAPEBENCH_CORE) has neither reference and reads no mesh files. What an engine does
  * not do is refused with a line. */
 #ifndef SHAPEBENCH_H
 #define SHAPEBENCH_H
