@@ -179,8 +179,7 @@ static void open_batch(const Lsm *lsm, Batch *batch)
 static void find_batch(Lsm *lsm, Batch *batch, long first, long end, bool *listed)
 {
     long area = (long)lsm->side * lsm->side;
-    int team = sm_team_for((end - first) * area);
-#pragma omp parallel for schedule(static) num_threads(team)
+#pragma omp parallel for schedule(static) num_threads(sm_team_for((end - first) * area))
     for (long p = first; p < end; p++) {
         bool simple;
         uint64_t *rows = batch->rows + (p - first) * area;

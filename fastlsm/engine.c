@@ -66,21 +66,29 @@ static void engine_goals(SmEngine *e)
     lsm_goals(e->lsm);
 }
 
-static void engine_get(SmEngine *e, SmField field, double (*values)[3])
+/* Numbers of NULL are 0 to count - 1. */
+static void engine_get_some(SmEngine *e, SmField field, long count, const long *numbers,
+                            double (*values)[3])
 {
     if (field == SM_GOAL && !e->lsm->g) engine_goals(e);
     const real *from = field_of(e, field);
     double to_velocity = e->lsm->cell / e->lsm->params.h;
-#pragma omp parallel for schedule(static) num_threads(sm_team_for(e->bodies * e->count))
-    for (long number = 0; number < e->bodies * e->count; number++) {
-        if (field == SM_REST) rest_position(e, number, values[number]);
+#pragma omp parallel for schedule(static) num_threads(sm_team_for(count))
+    for (long i = 0; i < count; i++) {
+        long number = numbers ? numbers[i] : i;
+        if (field == SM_REST) rest_position(e, number, values[i]);
         for (int d = 0; d < 3 && field != SM_REST; d++) {
             const double *origin;
             double value = (double)from[index_of(e, number, d, &origin)];
-            values[number][d] =
+            values[i][d] =
                 field == SM_VELOCITY ? value * to_velocity : origin[d] + value * e->lsm->cell;
         }
     }
+}
+
+static void engine_get(SmEngine *e, SmField field, double (*values)[3])
+{
+    engine_get_some(e, field, e->bodies * e->count, NULL, values);
 }
 
 /* Of a particle: `values`, or where they are NULL its place at rest. */
@@ -96,12 +104,14 @@ static void value_of(const SmEngine *e, const double (*values)[3], long number, 
  * in the order of particles, whatever the threads. */
 static void centre_on(SmEngine *e, const double (*position)[3])
 {
-    enum { AT_ONCE = 4096 };
-    double(*part)[3] = sm_alloc(AT_ONCE, sizeof *part);
+    enum { AT_ONCE = 1 << 17 };
+    long most = e->count < AT_ONCE ? e->count : AT_ONCE;
+    double(*part)[3] = sm_alloc((size_t)most, sizeof *part);
     for (long body = 0; body < e->bodies; body++) {
         double sum[3] = {0, 0, 0};
-        for (long first = 0; first < e->count; first += AT_ONCE) {
-            long count = e->count - first < AT_ONCE ? e->count - first : AT_ONCE;
+        for (long first = 0; first < e->count; first += most) {
+            long count = e->count - first < most ? e->count - first : most;
+#pragma omp parallel for schedule(static) num_threads(sm_team_for(count))
             for (long i = 0; i < count; i++)
                 value_of(e, position, body * e->count + first + i, part[i]);
             for (long i = 0; i < count; i++)
@@ -632,6 +642,7 @@ const SmEngineType SM_NAME(fastlsm_engine) = {
     .step = engine_step,
     .goals = engine_goals,
     .get = engine_get,
+    .get_some = engine_get_some,
     .set = engine_set,
     .push = engine_push,
     .bound = engine_bound,

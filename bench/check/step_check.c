@@ -12,7 +12,6 @@
 #include "../../octree/change/structure.h"
 #include "../../octree/region/frames.h"
 #include "../../reference/brute_obstacle.h"
-#include "../../reference/condition.h"
 
 /* ---- engines built as the one that is checked, and in its state, to take steps with */
 
@@ -207,8 +206,7 @@ static void find_origins(const BenchCheck *check, const SmEngine *engine, const 
     free(frame);
 }
 
-/* What rounding may make of region r's rigid velocity, relative; INFINITY: anything. */
-static double region_rounding(const RefCondition *c, const RefSums *sums, long r)
+double bench_check_rounding(const RefCondition *c, const RefSums *sums, long r)
 {
     double epsilon = sums->epsilon, square = 0, inertia = c->inertia;
     for (int d = 0; d < 3; d++) square += pow(c->centre[d] - sums->origin[r][d], 2);
@@ -232,7 +230,7 @@ static void particle_rounding(const BenchCheck *check, const RefSums *sums, cons
     for (long r = 0; r < check->count; r++) {
         RefCondition found;
         ref_condition(regions, check->weight, (const double(*)[3])check->rest, x, r, 0, &found);
-        of[r] = region_rounding(&found, sums, r);
+        of[r] = bench_check_rounding(&found, sums, r);
         if (regions->start[r + 1] - regions->start[r] == 1) of[r] = 0; /* it cannot turn */
     }
     for (long r = 0; r < check->count; r++)

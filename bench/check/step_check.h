@@ -3,6 +3,7 @@
 #ifndef BENCH_STEP_CHECK_H
 #define BENCH_STEP_CHECK_H
 
+#include "../../reference/condition.h"
 #include "check.h"
 
 /* A step without handles, obstacles and contacts: how far, in cells, a particle's end of it is from
@@ -27,6 +28,10 @@ double bench_check_motion(const BenchRunner *runner);
  * scripts/check_step.py has the same rule for recorded steps. */
 void bench_check_damping(const BenchCheck *check, const BenchScene *scene, const SmEngineType *type,
                          SmEngine *engine, BenchDeviation *found);
+
+/* The factor of k there: what rounding may make of the rigid velocity of region r, relative;
+ * INFINITY: anything. */
+double bench_check_rounding(const RefCondition *condition, const RefSums *sums, long r);
 
 /* Adds the check of obstacles to `found`, if the scene has any: the state of `engine` is stepped
  * once with them and once without, at no handles and contacts, and the one must be what

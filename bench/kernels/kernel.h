@@ -59,6 +59,7 @@ typedef struct {
     int threads;       /* 0: as asked for */
     bool doubled;      /* in double precision, beside single */
     bool large;        /* only by name or with `scaling` */
+    bool huge;         /* only by name */
     const char *base;  /* the kernel that it is compared with, */
     double wanted;     /* how many times its time or, on more threads, its speed */
     const char *paper; /* what the paper says */
@@ -129,7 +130,8 @@ typedef enum {
 /* A change of an octree while it runs: leaves split and merged again, edges of the graph cut. */
 enum { BENCH_REFINE, BENCH_CUT };
 
-extern const BenchKernelKind bench_cube_kernels, bench_polar_kernels, bench_surface_kernels,
-    bench_scene_kernels, bench_tree_step_kernels, bench_tree_setup_kernels, bench_change_kernels;
+extern const BenchKernelKind bench_cube_kernels, bench_cube_setup_kernels, bench_polar_kernels,
+    bench_surface_kernels, bench_scene_kernels, bench_tree_step_kernels, bench_tree_setup_kernels,
+    bench_change_kernels;
 
 #endif

@@ -41,6 +41,10 @@
         PART(number, of, prefix "-goals-hf", BENCH_TREE_GOALS, .at_most = 0),                      \
         PART(number, of, prefix "-goals-adjoint", BENCH_TREE_GOALS, .adjoint = true),              \
         PART(number, of, prefix "-damping", BENCH_TREE_DAMPING, .at_most = 0)
+#define CUBE(label, number, n, ...)                                                                \
+    {                                                                                              \
+        label, "setup", &bench_cube_setup_kernels, number, n, 1, .damping = 0.1, __VA_ARGS__       \
+    }
 #define SETUP(number, of, label, which, ...)                                                       \
     {                                                                                              \
         label, "octree", &bench_tree_setup_kernels, number, .side = (of), .part = (which),         \
@@ -98,6 +102,11 @@ static const BenchKernel kernels[] = {
     STEP("scale-1e5", "scaling", 40, 46, 1, .base = "scale-1e4", .wanted = 1.25),
     STEP("scale-1e6", "scaling", 40, 100, 1, .base = "scale-1e4", .wanted = 1.25),
     STEP("scale-1e7", "scaling", 40, 215, 1, .large = true, .base = "scale-1e4", .wanted = 1.25),
+    CUBE("setup-64", 41, 64, .at_most = 0),
+    CUBE("setup-128", 42, 128, .at_most = 150),
+    CUBE("setup-128-2threads", 43, 128, .threads = 2),
+    CUBE("setup-256", 44, 256, .large = true),
+    CUBE("setup-464", 45, 464, .huge = true), /* 10^8 particles */
     PARTS(50, BENCH_HAND, "oct-hand"),
     PART(50, BENCH_HAND, "oct-hand-step", BENCH_TREE_WHOLE, .at_most = 60e3, .paper = "4.5 ms"),
     PART(50, BENCH_HAND, "oct-hand-step-plain", BENCH_TREE_WHOLE, .weighting = OCT_PLAIN),
@@ -152,8 +161,8 @@ bool bench_kernel_known(const char *name)
     return false;
 }
 
-/* Is it asked for? A large one only by its name or with `scaling`; what is in double precision
- * anyway only once. */
+/* Is it asked for? A large one only by its name or with `scaling`, a huge one by its name; what is
+ * in double precision anyway only once. */
 static bool chosen(const BenchKernelParams *params, const BenchKernel *kernel)
 {
     bool any = !params->only[0];
@@ -162,7 +171,7 @@ static bool chosen(const BenchKernelParams *params, const BenchKernel *kernel)
         if (!strcmp(*only, kernel->name)) return true;
         any = any || !strcmp(*only, kernel->group);
     }
-    return any && (!kernel->large || params->scaling);
+    return any && !kernel->huge && (!kernel->large || params->scaling);
 }
 
 static bool has_base(const BenchKernel *kernel, const BenchKernel *base)

@@ -34,10 +34,9 @@ void lsm_lattice_sites(const SmVoxels *voxels, LsmLattice *l)
     l->words = (l->size[0] + 63) / 64;
     l->count = voxels->particle_count;
     long rows = (long)l->size[1] * l->size[2], before = 0;
-    int team = sm_team_for(rows * l->words);
     l->bits = sm_alloc((size_t)(rows * l->words), sizeof *l->bits);
     l->rank = sm_alloc((size_t)(rows * l->words), sizeof *l->rank);
-#pragma omp parallel for schedule(static) num_threads(team)
+#pragma omp parallel for schedule(static) num_threads(sm_team_for(rows * l->words))
     for (long row = 0; row < rows; row++) /* each row's number, for a moment */
         l->rank[row * l->words] = (uint32_t)sm_voxels_vertices(
             voxels, (int)(row % l->size[1]), (int)(row / l->size[1]), l->bits + row * l->words);
@@ -47,7 +46,7 @@ void lsm_lattice_sites(const SmVoxels *voxels, LsmLattice *l)
         before += count;
     }
     assert(before == l->count);
-#pragma omp parallel for schedule(static) num_threads(team)
+#pragma omp parallel for schedule(static) num_threads(sm_team_for(rows * l->words))
     for (long row = 0; row < rows; row++)
         for (long w = row * l->words; w + 1 < (row + 1) * l->words; w++)
             l->rank[w + 1] = l->rank[w] + (uint32_t)sm_count_bits(l->bits[w]);

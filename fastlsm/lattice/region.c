@@ -19,11 +19,10 @@ static void erode_x(const uint64_t *in, uint64_t *out, int words)
 static void erode(const LsmLattice *l, uint64_t *bitmap, uint64_t *scratch)
 {
     int ny = l->size[1], nz = l->size[2], words = l->words;
-    int team = sm_team_for((long)ny * nz * words);
-#pragma omp parallel for schedule(static) num_threads(team)
+#pragma omp parallel for schedule(static) num_threads(sm_team_for((long)ny *nz *words))
     for (long row = 0; row < (long)ny * nz; row++)
         erode_x(bitmap + row * words, scratch + row * words, words);
-#pragma omp parallel for schedule(static) num_threads(team)
+#pragma omp parallel for schedule(static) num_threads(sm_team_for((long)ny *nz *words))
     for (int z = 0; z < nz; z++)
         for (int y = 0; y < ny; y++) {
             uint64_t *out = bitmap + ((long)z * ny + y) * words;

@@ -132,6 +132,10 @@ typedef struct {
     /* The field of every particle; `values` is [particles][3]. SM_GOAL after
      * step() may cost a recomputation-free copy only if the last call was goals(). */
     void (*get)(SmEngine *engine, SmField field, double (*values)[3]);
+    /* The same of `count` particles only, in O(count). NULL of engines whose bodies are never so
+     * large. */
+    void (*get_some)(SmEngine *engine, SmField field, long count, const long *number,
+                     double (*values)[3]);
     void (*set)(SmEngine *engine, SmField field,
                 const double (*values)[3]); /* POSITION, VELOCITY; or NULL, see set_state */
 

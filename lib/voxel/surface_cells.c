@@ -223,9 +223,8 @@ static inline bool set_near(SmVoxels *v, const double *corner[3], long a, long b
 
 void sm_surface_cells(const SmMesh *mesh, const double (*point)[3], SmVoxels *voxels)
 {
-    int team = sm_team_for(mesh->triangle_count);
     long *only = sm_alloc((size_t)mesh->vertex_count, sizeof *only);
-#pragma omp parallel num_threads(team)
+#pragma omp parallel num_threads(sm_team_for(mesh->triangle_count))
     {
         Span *row = sm_alloc((size_t)voxels->size[1], sizeof *row);
 #pragma omp for schedule(static)
