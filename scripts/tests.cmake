@@ -156,6 +156,7 @@ if(NOT SHAPEBENCH_SANITIZE AND NOT SHAPEBENCH_CORE)
   foreach(what brute_force damage writers scenes) # more on request: --particles, --rounds, --seconds
     add_script_test(${what} test_${what}.py $<TARGET_FILE:shapebench>)
   endforeach()
+  add_script_test(by_isa by_isa.py $<TARGET_FILE:shapebench> hashes penguin hand-sampled)
   add_script_test(report report/test_report.py $<TARGET_FILE:shapebench>)
 endif()
 

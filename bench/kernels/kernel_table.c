@@ -221,6 +221,7 @@ static void write_people(FILE *file, BenchFormat format, const BenchKernelRow *r
     bench_grid_fit(&grid);
     BenchGrid one = grid;
     if (text) print_peaks(file, peak, sets, machine);
+    if (form == BENCH_GRID_MARKDOWN) bench_machine_measured(file, machine);
     bench_grid_head(file, &grid, form);
     one.lines = 1;
     for (int r = 0; r < count; r++) {

@@ -140,8 +140,11 @@ TEST(formats_parse)
     json_decref(root);
     free(text);
     write_rows(BENCH_AS_MARKDOWN, &text, &size);
+    const char *table = strchr(text, '|'); /* below when and where it was measured */
+    assert_non_null(strstr(text, machine.cpu));
+    assert_true(strstr(text, machine.cpu) < table);
     int bars = 0, lines = 0; /* every line has as many cells */
-    for (const char *c = text; *c; c++) {
+    for (const char *c = table; *c; c++) {
         bars += *c == '|';
         lines += *c == '\n';
     }

@@ -103,6 +103,13 @@ const char *bench_machine_where(const BenchMachine *machine, char text[BENCH_WHE
     return text;
 }
 
+void bench_machine_measured(FILE *file, const BenchMachine *machine)
+{
+    char where[BENCH_WHERE_TEXT];
+    fprintf(file, "Measured on %.10s, %s; %s.\n\n", machine->utc,
+            bench_machine_where(machine, where), machine->compiler);
+}
+
 bool bench_machine_same(const BenchMachine *a, const BenchMachine *b, size_t size, char *text)
 {
     const char *const texts[][3] = {

@@ -32,6 +32,9 @@ void bench_machine_stamp(char host[64], char utc[32]);
 enum { BENCH_WHERE_TEXT = 192 };
 const char *bench_machine_where(const BenchMachine *machine, char text[BENCH_WHERE_TEXT]);
 
+/* Above a table in Markdown, a paragraph: when, where and with which compiler. */
+void bench_machine_measured(FILE *file, const BenchMachine *machine);
+
 /* Is a text of it known? */
 bool bench_machine_known(const char *text);
 

@@ -25,6 +25,7 @@ static BenchTableKind table_of(const BenchReport *report, bool elastic)
 static void begin_table(BenchReport *report, bool elastic)
 {
     if (report->form == BENCH_GRID_PLAIN) print_heading(report, elastic);
+    if (report->form == BENCH_GRID_MARKDOWN) bench_machine_measured(report->file, report->machine);
     bench_row_columns(report->rows, report->count, table_of(report, elastic), report->form,
                       &report->grid);
     bench_grid_head(report->file, &report->grid, report->form);
