@@ -163,27 +163,30 @@ SM_INLINE vec lanes_join(const part_vec part[SM_LANES / SM_PART])
 
 /* clang-format off */
 #if SM_LANES == 16
-#define LANES_ZIP_LOW  0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23
-#define LANES_ZIP_HIGH 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31
 #define LANES_EVEN     0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30
 #define LANES_ODD      1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31
 #elif SM_LANES == 8
-#define LANES_ZIP_LOW  0, 8, 1, 9, 2, 10, 3, 11
-#define LANES_ZIP_HIGH 4, 12, 5, 13, 6, 14, 7, 15
 #define LANES_EVEN     0, 2, 4, 6, 8, 10, 12, 14
 #define LANES_ODD      1, 3, 5, 7, 9, 11, 13, 15
 #else
-#define LANES_ZIP_LOW  0, 4, 1, 5
-#define LANES_ZIP_HIGH 2, 6, 3, 7
 #define LANES_EVEN     0, 2, 4, 6
 #define LANES_ODD      1, 3, 5, 7
 #endif
+#ifdef LANES_HALVES
+#elif SM_LANES == 16
+#define LANES_ZIP_LOW  0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23
+#define LANES_ZIP_HIGH 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31
+#elif SM_LANES == 8
+#define LANES_ZIP_LOW  0, 8, 1, 9, 2, 10, 3, 11
+#define LANES_ZIP_HIGH 4, 12, 5, 13, 6, 14, 7, 15
+#else
+#define LANES_ZIP_LOW  0, 4, 1, 5
+#define LANES_ZIP_HIGH 2, 6, 3, 7
+#endif
 /* clang-format on */
 
-/* From `n` vectors, a power of two to 16, to the rows of their lanes: afterwards the vectors, laid
- * end to end, hold lane 0 of all, then lane 1 of all, and so on. Perfect shuffles: log2(n) rounds
- * of zips. With n = SM_LANES this is a transpose. */
-SM_INLINE void lanes_interleave(vec *m, int n)
+/* log2(n) rounds of zips. */
+SM_INLINE void lanes_zip(vec *m, int n)
 {
     for (int round = 1; round < n; round *= 2) {
         vec out[16];
@@ -191,9 +194,37 @@ SM_INLINE void lanes_interleave(vec *m, int n)
             out[2 * i] = __builtin_shufflevector(m[i], m[i + n / 2], LANES_ZIP_LOW);
             out[2 * i + 1] = __builtin_shufflevector(m[i], m[i + n / 2], LANES_ZIP_HIGH);
         }
-        for (int i = 0; i < n; i++) m[i] = out[i];
+        lanes_copy(n, out, m);
     }
 }
+
+/* From `n` vectors, a power of two to 16, to the rows of their lanes: afterwards the vectors, laid
+ * end to end, hold lane 0 of all, then lane 1 of all, and so on. Perfect shuffles: log2(n) rounds
+ * of zips. With n = SM_LANES this is a transpose. */
+#ifndef LANES_HALVES
+SM_INLINE void lanes_interleave(vec *m, int n)
+{
+    lanes_zip(m, n);
+}
+#else
+/* The processor zips the halves of a vector for themselves: they are put in their places first
+ * where the rows are vectors, and else at the end. */
+SM_INLINE void lanes_interleave(vec *m, int n)
+{
+    if (n < 2) return;
+    vec half[16];
+    if (n != SM_LANES) lanes_zip(m, n);
+    for (int i = 0; i < n / 2; i++) {
+        int a = n == SM_LANES ? i : 2 * i, b = n == SM_LANES ? i + n / 2 : 2 * i + 1;
+        half[i] = __builtin_shufflevector(m[a], m[b], LANES_LOWS);
+        half[i + n / 2] = __builtin_shufflevector(m[a], m[b], LANES_HIGHS);
+    }
+    lanes_copy(n, half, m);
+    if (n != SM_LANES) return;
+    lanes_zip(m, n / 2);
+    lanes_zip(m + n / 2, n / 2);
+}
+#endif
 
 /* The reverse of lanes_interleave(): from the rows of lanes to a vector for each of their values.
  */

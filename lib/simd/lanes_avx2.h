@@ -4,6 +4,20 @@
 
 #include <immintrin.h>
 
+/* Zips of each half for itself are one instruction, others two. */
+#define LANES_HALVES
+#if SM_REAL_BITS == 32
+#define LANES_ZIP_LOW  0, 8, 1, 9, 4, 12, 5, 13
+#define LANES_ZIP_HIGH 2, 10, 3, 11, 6, 14, 7, 15
+#define LANES_LOWS     0, 1, 2, 3, 8, 9, 10, 11
+#define LANES_HIGHS    4, 5, 6, 7, 12, 13, 14, 15
+#else
+#define LANES_ZIP_LOW  0, 4, 2, 6
+#define LANES_ZIP_HIGH 1, 5, 3, 7
+#define LANES_LOWS     0, 1, 4, 5
+#define LANES_HIGHS    2, 3, 6, 7
+#endif
+
 #if SM_REAL_BITS == 32
 typedef __m256 native_vec;
 #define AVX2(name) _mm256_##name##_ps
