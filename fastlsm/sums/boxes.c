@@ -115,7 +115,7 @@ SM_INLINE BlockRow row_at(const Lsm *lsm, int plane, int y)
 }
 
 /* From this width on. */
-enum { FAR = SM_LANES == 16 ? 8 : 5 };
+enum { FAR = SM_LANES >= 8 ? 8 : 5 };
 
 SM_INLINE void far_sum_of(real *value, int count, long stride, int w, int whole, long moment)
 {
