@@ -25,7 +25,7 @@ set(kernel_steps ${bench_sources}) # steps kernels, or measures what they could 
 list(FILTER kernel_steps INCLUDE REGEX "/bench/kernels/(tree_steps|peak_loops)\\.c$")
 list(REMOVE_ITEM bench_sources ${kernel_steps})
 include_directories(SYSTEM ${HDF5_INCLUDE_DIRS}) # their rows are stored
-add_kernels(kernel_steps kernel_steps ${kernel_steps})
+add_kernels(kernel_steps kernel_steps "32;64" ${kernel_steps})
 add_library(shapebench_bench STATIC ${bench_sources} ${kernel_steps})
 add_dependencies(shapebench_bench provenance)
 target_include_directories(shapebench_bench PRIVATE ${CMAKE_BINARY_DIR})

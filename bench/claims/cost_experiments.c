@@ -5,7 +5,7 @@
 #include "../../fastlsm/fastlsm.h"
 #include "../../lib/system/team.h"
 #include "../../octree/change/structure.h"
-#include "../../octree/region/multi_source_search.h"
+#include "../../octree/search/multi_source_search.h"
 #include "../../octree/region/one_sided_regions.h"
 #include "../engines.h"
 #include "../kernels/cubes.h"
@@ -254,7 +254,7 @@ static double distance_percent(Resampled *of, int node)
         long left = change->searched_count - from, count = left < OCT_SOURCES ? left : OCT_SOURCES;
         for (int lane = 0; lane < count; lane++)
             reaches[lane] = oct_one_sided_reach(s->w[leaf[lane]], s->options.epsilon);
-        oct_search_distances(&of->search, (int)count, leaf, reaches);
+        oct_search.distances(&of->search, (int)count, leaf, reaches);
     }
     double search = sm_now() - start;
     change_all(s, leaves, leaf_count, false);

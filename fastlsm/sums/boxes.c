@@ -114,6 +114,9 @@ SM_INLINE BlockRow row_at(const Lsm *lsm, int plane, int y)
     return (BlockRow){box->run + first[0], first[1] - first[0]};
 }
 
+/* 16 in place of 32. */
+enum { FEW_REGISTERS = SM_VECTOR_BYTES < 64 };
+
 /* From this width on. */
 enum { FAR = SM_LANES >= 8 ? 8 : 5 };
 
@@ -308,8 +311,8 @@ SM_INLINE void run_up_all(const Lsm *lsm, const BlockRun *run, int w, bool plain
         run_up_far(lsm, run, w, plain, moving, kept, row);
         return;
     }
-    if (plain) /* in turn: all at once would not fit into registers */
-        for (int d = 0; d < 3; d++) run_up(lsm, run, w, true, moving, d, 1, kept, row);
+    if (plain || FEW_REGISTERS) /* in turn: all at once would not fit into registers */
+        for (int d = 0; d < 3; d++) run_up(lsm, run, w, plain, moving, d, 1, kept, row);
     else
         run_up(lsm, run, w, false, moving, 0, 3, kept, row);
 }
@@ -501,7 +504,7 @@ SM_INLINE void row_down(const Lsm *lsm, const Scratch *s, BlockRow at, int newes
                 run_down_far(lsm, &in, run, w, plain, false, s->line, out);
             continue;
         }
-        if (w < RUNNING)
+        if (w < RUNNING && !FEW_REGISTERS)
             run_down(lsm, &in, run, w, plain, false, 0, 3, out);
         else
             for (int d = 0; d < 3; d++) {

@@ -16,6 +16,7 @@
 #endif
 #define SM_JOIN(name, precision, isa)  SM_JOIN_(name, precision, isa)
 #define SM_JOIN_(name, precision, isa) name##precision##isa
+#define SM_ISA_NAME(name)              SM_JOIN(name, _, SM_ISA) /* of kernels without reals */
 
 /* The width of its vectors; with SM_SCALAR that of the narrowest, and what the compiler does not
  * know of them is done lane by lane. */

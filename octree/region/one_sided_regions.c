@@ -28,7 +28,7 @@ void oct_pairs_add(OctPairs *p, const OctSearch *s, int first, const int *w)
 {
     for (long at = 0; at < s->leaves; at++) {
         int leaf = s->leaf[at];
-        unsigned lanes = s->held[at] & oct_lanes_beyond(s->distance[at], w[leaf]);
+        unsigned lanes = s->held[at] & oct_search.beyond(&s->distance[at], w[leaf]);
         if (!lanes) continue;
         grow(p);
         p->item[p->count++] = (struct OctPair){leaf, first, lanes};
@@ -61,7 +61,7 @@ static void search(const Build *b, OctSearch *s, long from, int count, SmCsrPart
         leaf[lane] = (int)from + lane;
         reaches[lane] = oct_one_sided_reach(b->w[leaf[lane]], b->epsilon);
     }
-    oct_search_find(s, count, leaf, b->w + from, reaches);
+    oct_search.find(s, count, leaf, b->w + from, reaches);
     oct_pairs_add(pairs, s, (int)from, b->w);
     for (int lane = 0; lane < count; lane++) {
         b->one_sided->width[leaf[lane]] = s->width[lane];

@@ -11,7 +11,7 @@
 
 #include "../graph/graph.h"
 #include "../tree/cover.h"
-#include "multi_source_search.h"
+#include "../search/multi_source_search.h"
 
 typedef struct {
     SmCsr members; /* of every leaf's region: summation nodes, rising */

@@ -195,7 +195,7 @@ static void search(OctRegionChange *c, long n, int count)
         w[lane] = c->w[c->list[n + lane]];
         reaches[lane] = reach_of(c, c->list[n + lane]);
     }
-    oct_search_find(&c->search, count, c->list + n, w, reaches);
+    oct_search.find(&c->search, count, c->list + n, w, reaches);
     oct_pairs_add(&c->pairs, &c->search, (int)n, c->w);
     for (int lane = 0; lane < count; lane++) {
         int i = c->list[n + lane], members = c->search.members[lane];

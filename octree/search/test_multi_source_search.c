@@ -3,8 +3,8 @@
 
 #include "../../lib/test_frame.h"
 #include "../../reference/octree_regions.h"
+#include "../region/one_sided_regions.h"
 #include "../tree/test_trees.h"
-#include "one_sided_regions.h"
 
 enum { TRIALS = 400, LEAVES = 200 };
 
@@ -68,7 +68,7 @@ static void check_leaves(const Both *b, int lane, int reach, const bool *held)
         else
             assert_true(at < 0 || s->distance[at][lane] > reach);
         if (at >= 0)
-            assert_int_equal(oct_lanes_beyond(s->distance[at], reach) >> lane & 1,
+            assert_int_equal(oct_search.beyond(&s->distance[at], reach) >> lane & 1,
                              s->distance[at][lane] > reach);
         if (held[l] && distance > width) width = distance;
     }
@@ -108,7 +108,7 @@ static void check_search(Both *b, unsigned *seed)
         w[n] = b->w[leaf[n]];
         reach[n] = oct_one_sided_reach(w[n], b->epsilon);
     }
-    oct_search_find(&b->search, count, leaf, w, reach);
+    oct_search.find(&b->search, count, leaf, w, reach);
     for (int n = 0; n < count; n++) check_lane(b, n, leaf[n], reach[n]);
 }
 

@@ -2,23 +2,17 @@
 
 #include <stdlib.h>
 #include <string.h>
-#if defined(__AVX512F__) && !defined(OCT_PORTABLE) /* test_multi_source_search_portable.c */
-#define OCT_MASKS
+#ifdef __AVX512F__
 #include <immintrin.h>
 #endif
 
 #include "../../lib/csr.h"
+#include "../../lib/simd/real.h"
 
 enum { ALL = (1 << OCT_SOURCES) - 1 };
 
 /* Vectors as wide as the processor's: gcc compares wider ones number by number. */
-#if defined(OCT_MASKS)
-enum { VECTORS = 1 };
-#elif defined(__AVX2__)
-enum { VECTORS = 2 };
-#else
-enum { VECTORS = 4 };
-#endif
+enum { VECTORS = OCT_SOURCES * (int)sizeof(int) / SM_VECTOR_BYTES };
 typedef int Vector __attribute__((vector_size(OCT_SOURCES / VECTORS * sizeof(int))));
 typedef union {
     OctLanes all;
@@ -28,7 +22,7 @@ typedef union {
 /* The lanes in which a is less than b. */
 static inline unsigned below(OctLanes a, OctLanes b)
 {
-#ifdef OCT_MASKS
+#ifdef __AVX512F__
     return _mm512_cmplt_epi32_mask((__m512i)a, (__m512i)b);
 #else
     const OctLanes bit = {1,   2,   4,       8,       16,      32,      64,      128,
@@ -67,43 +61,9 @@ static inline OctLanes same(int value)
     return (OctLanes){0} + value;
 }
 
-unsigned oct_lanes_beyond(OctLanes distance, int width)
+static unsigned beyond(const OctLanes *distance, int width)
 {
-    return below(same(width), distance);
-}
-
-void oct_search_init(OctSearch *s, const OctTree *tree, const OctReach *reach)
-{
-    *s = (OctSearch){.tree = tree, .reach = reach};
-}
-
-void oct_search_free(OctSearch *s)
-{
-    sm_free_all(s->leaf, s->distance, s->held, s->member, s->leaf_at, s->waiting, s->queue,
-                s->inner, s->inner_at);
-    *s = (OctSearch){0};
-}
-
-size_t oct_search_bytes(const OctSearch *s)
-{
-    size_t leaf = sizeof *s->leaf + sizeof *s->distance + sizeof *s->held + sizeof *s->waiting +
-                  OCT_SOURCES * sizeof *s->member;
-    return (size_t)s->leaf_room * leaf + (size_t)s->inner_room * sizeof *s->inner +
-           (size_t)s->queue_room * sizeof *s->queue + (size_t)s->leaf_space * sizeof *s->leaf_at +
-           (size_t)s->node_space * sizeof *s->inner_at;
-}
-
-void oct_search_grow(OctSearch *s, long nodes, long leaves, const int *all_below)
-{
-    s->below = all_below;
-    if (leaves > s->leaf_space) {
-        s->leaf_at = sm_widen(s->leaf_at, s->leaf_space, leaves, sizeof(int), 0xff);
-        s->leaf_space = leaves;
-    }
-    if (nodes > s->node_space) {
-        s->inner_at = sm_widen(s->inner_at, s->node_space, nodes, sizeof(int), 0xff);
-        s->node_space = nodes;
-    }
+    return below(same(width), *distance);
 }
 
 /* Forgets the last search. */
@@ -163,7 +123,7 @@ static long spread(OctSearch *s, long place, long end)
     return end;
 }
 
-void oct_search_distances(OctSearch *s, int count, const int *leaf, const int *reaches)
+static void find_distances(OctSearch *s, int count, const int *leaf, const int *reaches)
 {
     long end;
     clear(s);
@@ -257,15 +217,17 @@ static void choose(OctSearch *s)
     }
 }
 
-void oct_search_find(OctSearch *s, int count, const int *leaf, const int *w, const int *reaches)
+static void find(OctSearch *s, int count, const int *leaf, const int *w, const int *reaches)
 {
     s->w = same(-1);
     s->width = same(0);
     memset(s->members, 0, sizeof s->members);
     for (int l = 0; l < count; l++)
         s->w[l] = w[l] < reaches[l] ? w[l] : reaches[l]; /* nothing beyond is found */
-    oct_search_distances(s, count, leaf, reaches);
+    find_distances(s, count, leaf, reaches);
     find_intervals(s);
     choose(s);
     for (int l = 0; l < count; l++) sm_sort_ints(s->member + l * s->leaf_room, s->members[l]);
 }
+
+const OctSearchKernels SM_ISA_NAME(oct_search) = {find_distances, find, beyond};

@@ -54,14 +54,20 @@ size_t oct_search_bytes(const OctSearch *search);
 /* Makes the scratch good for as many numbers, between searches. */
 void oct_search_grow(OctSearch *search, long nodes, long leaves, const int *below);
 
-/* The distances alone, with which oct_search_find() begins: `leaves`, `leaf` and `distance`. */
-void oct_search_distances(OctSearch *search, int count, const int *leaf, const int *reaches);
+/* The searches, of the instruction set in use (lib/isa.h). */
+typedef struct {
+    /* The distances alone, with which find() begins: `leaves`, `leaf` and `distance`. */
+    void (*distances)(OctSearch *search, int count, const int *leaf, const int *reaches);
 
-/* The regions of `count` different leaves of widths w that reach so far (0 to OCT_FAR / 2). Cost:
- * what all of them reach together, times its edges, for each time that a distance to it falls; so
- * leaves should be near each other. */
-void oct_search_find(OctSearch *search, int count, const int *leaf, const int *w,
-                     const int *reaches);
+    /* The regions of `count` different leaves of widths w that reach so far (0 to OCT_FAR / 2).
+     * Cost: what all of them reach together, times its edges, for each time that a distance to it
+     * falls; so leaves should be near each other. */
+    void (*find)(OctSearch *search, int count, const int *leaf, const int *w, const int *reaches);
+
+    /* Lanes in which a distance is more than `width`. */
+    unsigned (*beyond)(const OctLanes *distance, int width);
+} OctSearchKernels;
+extern OctSearchKernels oct_search;
 
 /* The members of a lane, rising. */
 static inline const int *oct_search_member(const OctSearch *search, int lane)
@@ -75,8 +81,5 @@ static inline bool oct_search_holds(const OctSearch *search, int lane, int leaf)
     int at = search->leaf_at[leaf];
     return at >= 0 && (search->held[at] >> lane & 1);
 }
-
-/* Lanes in which a distance is more than `width`. */
-unsigned oct_lanes_beyond(OctLanes distance, int width);
 
 #endif
