@@ -194,7 +194,7 @@ SM_INLINE void lanes_zip(vec *m, int n)
             out[2 * i] = __builtin_shufflevector(m[i], m[i + n / 2], LANES_ZIP_LOW);
             out[2 * i + 1] = __builtin_shufflevector(m[i], m[i + n / 2], LANES_ZIP_HIGH);
         }
-        lanes_copy(n, out, m);
+        for (int i = 0; i < n; i++) m[i] = out[i];
     }
 }
 

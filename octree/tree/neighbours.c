@@ -1,5 +1,7 @@
 #include "neighbours.h"
 
+#include "../../lib/bits.h"
+
 unsigned char *oct_tree_octants(const OctTree *tree)
 {
     unsigned char *octants = sm_alloc((size_t)tree->nodes, 1);
@@ -22,7 +24,7 @@ static int child_at(const OctTree *tree, const unsigned char *octants, int cell,
 {
     if (cell < 0 || !tree->children[cell]) return cell;
     if (!(octants[cell] >> octant & 1)) return -1;
-    return tree->child[cell] + __builtin_popcount(octants[cell] & ((1U << octant) - 1));
+    return tree->child[cell] + sm_count_bits(octants[cell] & ((1U << octant) - 1));
 }
 
 /* A cell's neighbours are children of its parent or of the parent's neighbours. */
