@@ -10,8 +10,8 @@
 #define OCT_ONE_SIDED_REGIONS_H
 
 #include "../graph/graph.h"
-#include "../tree/cover.h"
 #include "../search/multi_source_search.h"
+#include "../tree/cover.h"
 
 typedef struct {
     SmCsr members; /* of every leaf's region: summation nodes, rising */
