@@ -1,0 +1,91 @@
+#!/usr/bin/env bash
+# Tests the core (SHAPEBENCH_CORE) for processors that this machine is not, and its scalar form under
+# every sanitizer:
+#   arm        64-bit ARM under qemu; where its bodies come to lie is held to where this machine's do
+#   avx2       x86-64 with AVX2 under qemu, where this machine has none
+#   portable   SHAPEBENCH_SCALAR under the address and undefined, then under the thread sanitizer
+#   wasm       WebAssembly with simd128: that all kernels compile
+# Emulated, arithmetic is some fifty times slower: the tests that take longest are left out unless TESTS, a
+# regular expression of names, asks for them.
+#
+# usage: scripts/check_processors.sh arm|avx2|portable|wasm [TESTS]
+# exit codes: 0 all passed, 1 something failed, 2 not so called, 3 packages are missing and were named
+set -u
+# shellcheck source=scripts/setup
+. "$(dirname -- "${BASH_SOURCE[0]}")/setup"
+export OMP_WAIT_POLICY=passive
+quick='^(lib_(csr|isa|lanes|polar|rigid|shapebench)|fastlsm_(box_sum_fixups|engine|window)|octree_(engine|octree))'
+
+# tests FOLDER TESTS [CMAKE OPTIONS]: builds the core there and runs its tests.
+tests() {
+    build "$1" all -DSHAPEBENCH_CORE=ON "${@:3}" || exit 1
+    ctest --test-dir "$root/$1" -j "$(nproc)" --output-on-failure --no-tests=error -R "$2" || return 1
+}
+
+# arm_libraries FOLDER: unpacks there what ARM's tests are linked with, by lists and archives of its own: the system stays as it is.
+arm_libraries() {
+    local apt=$1/apt
+    local -a options=(-qq -o APT::Architecture=arm64 -o APT::Architectures::=arm64 -o Dir::State="$apt/state"
+        -o Dir::State::status="$apt/status" -o Dir::Cache="$apt/cache" -o APT::Sandbox::User=)
+    [ ! -e "$1/usr/include/gsl" ] || return 0
+    mkdir -p "$apt/state/lists/partial" "$apt/cache/archives/partial" && : >"$apt/status" &&
+        apt-get "${options[@]}" update && (cd "$apt" && apt-get "${options[@]}" download \
+        libcmocka-dev:arm64 libcmocka0:arm64 libgsl-dev:arm64 libgsl27:arm64 libgslcblas0:arm64) || return
+    for archive in "$apt"/*.deb; do dpkg -x "$archive" "$1" || return; done
+}
+
+arm() {
+    local arm_root=$root/build-arm/libraries positions=$root/build-arm/positions
+    arm_libraries "$arm_root" || { say "no ARM libraries: is a Debian archive in reach?" && exit 3; }
+    rm -f -- "$positions"
+    export SHAPEBENCH_POSITIONS=$positions
+    tests build-native '^lib_isa$' -DCMAKE_BUILD_TYPE=Release -DSHAPEBENCH_NATIVE=ON '-DSHAPEBENCH_TESTS=^lib_isa$' || exit 1
+    export PKG_CONFIG_SYSROOT_DIR=$arm_root
+    export PKG_CONFIG_LIBDIR=$arm_root/usr/lib/aarch64-linux-gnu/pkgconfig
+    tests build-arm "$1" -DCMAKE_BUILD_TYPE=Release -DCMAKE_SYSTEM_NAME=Linux -DCMAKE_SYSTEM_PROCESSOR=aarch64 \
+        -DCMAKE_C_COMPILER=aarch64-linux-gnu-gcc \
+        "-DCMAKE_CROSSCOMPILING_EMULATOR=qemu-aarch64;-L;/usr/aarch64-linux-gnu;-E;LD_LIBRARY_PATH=$arm_root/usr/lib/aarch64-linux-gnu"
+    local status=$?
+    grep -h 'another machine' "$root/build-arm/Testing/Temporary/LastTest.log"
+    return "$status"
+}
+
+portable() {
+    local archer
+    archer=$(clang -print-file-name=libarcher.so)
+    tests build-portable-asan "$1" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DSHAPEBENCH_SCALAR=ON \
+        -DSHAPEBENCH_SANITIZE=address,undefined &&
+        OMP_TOOL_LIBRARIES=$archer TSAN_OPTIONS=ignore_noninstrumented_modules=1 tests build-portable-tsan \
+            "$1" -DCMAKE_C_COMPILER=clang -DCMAKE_BUILD_TYPE=RelWithDebInfo -DSHAPEBENCH_SCALAR=ON \
+            -DSHAPEBENCH_SANITIZE=thread
+}
+
+wasm() {
+    local source bits failed=0
+    for source in "$root"/{lib/simd,fastlsm,fastlsm/sums,octree}/[!t]*.c; do
+        for bits in 32 64; do
+            clang --target=wasm32-wasi -msimd128 -O2 -c -o /dev/null -std=gnu11 -Wall -Wextra -Werror \
+                -Wno-unknown-pragmas -Wno-unused-variable -Wno-pass-failed -fno-math-errno -DSM_REAL_BITS=$bits -DSM_ISA_NATIVE \
+                "$source" || failed=1
+        done
+    done
+    return "$failed"
+}
+
+case ${1-} in
+arm | avx2 | portable | wasm) ;;
+*) say "usage: scripts/check_processors.sh arm|avx2|portable|wasm [TESTS]" && exit 2 ;;
+esac
+case $1 in
+arm) setup_packages core gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user ;;
+avx2) setup_packages core qemu-user ;;
+portable) setup_packages core clang libomp-dev libclang-rt-14-dev ;;
+wasm) setup_packages core clang libomp-dev wasi-libc ;;
+esac
+case $1 in
+avx2) # qemu 7.2 reads what a masked load leaves out, so lib_lanes fails there, not on a processor
+    tests build-avx2 "${2-${quick/lanes|/}(_avx2(_f64)?)?\$}" -DCMAKE_BUILD_TYPE=Release \
+        "-DCMAKE_CROSSCOMPILING_EMULATOR=qemu-x86_64;-cpu;max" ;;
+wasm) wasm ;;
+*) "$1" "${2-$quick(_f64)?\$}" ;;
+esac
