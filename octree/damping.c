@@ -80,9 +80,9 @@ static void solve(OctTask *task, long first, long last)
                         k->mass * out[3], k->mass * out[4], k->mass * out[5], lanes_set(0)};
         lanes_interleave(field, 8);
         for (int lane = 0; lane < SM_LANES; lane++)
-            store8(task->rows->velocity +
-                       (long)oct->row[block * SM_LANES + lane] * OCT_ROW_VELOCITY,
-                   load8((const real *)field + lane * OCT_ROW_VELOCITY));
+            half_store(task->rows->velocity +
+                           (long)oct->row[block * SM_LANES + lane] * OCT_ROW_VELOCITY,
+                       half_load((const real *)field + lane * OCT_ROW_VELOCITY));
     }
     sm_lap(task->laps, SM_DAMPING);
 }
@@ -94,21 +94,22 @@ static void velocities_up(OctTask *task, long first, long last)
     for (long i = first; i < last; i++) {
         long node = task->inner[i];
         const real *child = velocity + (long)oct->child[node] * OCT_ROW_VELOCITY;
-        vec8 sum = {0};
-        for (int c = 0; c < oct->children[node]; c++) sum += load8(child + c * OCT_ROW_VELOCITY);
-        store8(velocity + node * OCT_ROW_VELOCITY, sum);
+        HalfRow sum = {0};
+        for (int c = 0; c < oct->children[node]; c++)
+            sum = half_add(sum, half_load(child + c * OCT_ROW_VELOCITY));
+        half_store(velocity + node * OCT_ROW_VELOCITY, sum);
     }
 }
 
-SM_INLINE vec8 list_velocity(const OctSumLists *lists, const real *velocity, long t)
+SM_INLINE HalfRow list_velocity(const OctSumLists *lists, const real *velocity, long t)
 {
     const int *row = lists->rows.item + lists->rows.first[t];
     const int *end = lists->rows.item + lists->rows.end[t];
-    vec8 sum[OCT_GROUP] = {{0}};
+    HalfRow sum[OCT_GROUP] = {0};
     for (; row < end; row += OCT_GROUP)
         for (int i = 0; i < OCT_GROUP; i++)
-            sum[i] += load8(velocity + (long)row[i] * OCT_ROW_VELOCITY);
-    for (int i = 1; i < OCT_GROUP; i++) sum[0] += sum[i];
+            sum[i] = half_add(sum[i], half_load(velocity + (long)row[i] * OCT_ROW_VELOCITY));
+    for (int i = 1; i < OCT_GROUP; i++) sum[0] = half_add(sum[0], sum[i]);
     return sum[0];
 }
 
@@ -117,7 +118,8 @@ static void velocities_down(OctTask *task, long first, long last)
     const OctSumLists *lists = oct_goal_lists(task->oct);
     real *velocity = task->rows->velocity;
     for (long k = first; k < last; k++)
-        store8(velocity + oct_prefix_row(k) * OCT_ROW_VELOCITY, list_velocity(lists, velocity, k));
+        half_store(velocity + oct_prefix_row(k) * OCT_ROW_VELOCITY,
+                   list_velocity(lists, velocity, k));
 }
 
 static void slow(OctTask *task, long first, long last)
@@ -129,9 +131,9 @@ static void slow(OctTask *task, long first, long last)
         long at = block * 3 * SM_LANES;
         vec x[3], v[3], field[8], sum[6], shift[3];
         for (int lane = 0; lane < SM_LANES; lane++)
-            store8((real *)field + lane * OCT_ROW_VELOCITY,
-                   list_velocity(lists, task->rows->velocity,
-                                 lists->prefixes + block * SM_LANES + lane));
+            half_store((real *)field + lane * OCT_ROW_VELOCITY,
+                       list_velocity(lists, task->rows->velocity,
+                                     lists->prefixes + block * SM_LANES + lane));
         lanes_separate(field, 8);
         for (int i = 0; i < 6; i++) sum[i] = field[i / 3 * 4 + i % 3];
         load3(task->body->x + at, x);

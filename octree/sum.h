@@ -1,4 +1,4 @@
-/* sum.h - rows and their sums: what depth, breadth and the adjoint of HF are made of (octree
+/* sum.h - sums of rows: what depth, breadth and the adjoint of HF are made of (octree
  * section 4.3).
  *
  * Moments are about the node's own centre, and are shifted exactly when they are added to a sum
@@ -6,6 +6,7 @@
 #ifndef OCT_SUM_H
 #define OCT_SUM_H
 
+#include "../lib/simd/rows.h"
 #include "state.h"
 
 #define oct_each_block SM_NAME(oct_each_block)
@@ -23,24 +24,6 @@ void oct_climb(OctTask *task, OctPass *pass); /* inner nodes, level by level fro
 void oct_descend(OctTask *task, const OctSumLists *lists,
                  OctPass *pass); /* prefixes, from the top */
 void oct_each_ghost(OctTask *task, OctPass *pass);
-
-enum { ROW_VECS = OCT_ROW / SM_LANES };
-
-typedef struct {
-    vec vector[ROW_VECS];
-} Row;
-
-SM_INLINE Row row_load(const real *p)
-{
-    Row row;
-    for (int i = 0; i < ROW_VECS; i++) row.vector[i] = lanes_load(p + i * SM_LANES);
-    return row;
-}
-
-SM_INLINE void row_store(real *p, Row row)
-{
-    for (int i = 0; i < ROW_VECS; i++) lanes_store(p + i * SM_LANES, row.vector[i]);
-}
 
 #if SM_LANES == 16
 #define ROW_PADS     3, 3, 3, 3, 7, 7, 7, 7, 11, 11, 11, 11, 15, 15, 15, 15
@@ -104,12 +87,6 @@ SM_INLINE void row_add_values(Row row, const Row *from, Row *value)
     Row pads = row_pads(row);
     for (int i = 0; i < ROW_VECS; i++)
         value->vector[i] += row.vector[i] * (from->vector[i] - pads.vector[i]);
-}
-
-SM_INLINE Row row_add(Row a, Row b)
-{
-    for (int i = 0; i < ROW_VECS; i++) a.vector[i] += b.vector[i];
-    return a;
 }
 
 /* The sum of what a loop over a list kept apart, so that its additions need not wait for each

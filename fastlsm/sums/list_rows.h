@@ -2,6 +2,7 @@
 #ifndef LSM_LIST_ROWS_H
 #define LSM_LIST_ROWS_H
 
+#include "../../lib/simd/rows.h"
 #include "../state.h"
 
 /* Each kernel is one body in which `side` is a constant for the usual widths. */

@@ -5,28 +5,6 @@
 #include "lists.h"
 #include "window.h"
 
-/* `v` in the first or last four lanes of sixteen, zero elsewhere; the compiler would go through
- * memory, and stall there. */
-SM_INLINE vec16 widen_first(vec4 v)
-{
-#if defined(__AVX512F__) && SM_REAL_BITS == 32
-    return (vec16)_mm512_zextps128_ps512((__m128)v);
-#else
-    return __builtin_shufflevector(v, (vec4){0}, 0, 1, 2, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4);
-#endif
-}
-
-SM_INLINE vec16 widen_last(vec4 v)
-{
-#if defined(__AVX512F__) && SM_REAL_BITS == 32
-    return (vec16)_mm512_maskz_broadcast_f32x4(0xf000, (__m128)v);
-#else
-    return __builtin_shufflevector(v, (vec4){0}, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 0, 1, 2, 3);
-#endif
-}
-
-#define FIRST_FOUR(v) __builtin_shufflevector(v, v, 0, 1, 2, 3)
-
 /* The names in row `row` of a list, two at a time: loads are what the sums wait for. */
 SM_INLINE void read_names(const int *list, long row, int side, uint64_t *name)
 {
@@ -56,8 +34,7 @@ SM_INLINE void bars_up(const Lsm *lsm, long first, long last, int side)
             sum += left + right;
             moment = WINDOW_MOMENT(moment, o, right - left);
         }
-        real *out = lsm->rows.bar + bar * ROW_BAR;
-        store8(out, __builtin_shufflevector(sum, moment, 0, 1, 2, 3, 4, 5, 6, 7));
+        half_store(lsm->rows.bar + bar * ROW_BAR, half_of(sum, moment));
     }
 }
 
@@ -68,40 +45,40 @@ SM_INLINE void plates_up(const Lsm *lsm, long first, long last, int side)
         uint64_t name[LSM_MAX_SIDE];
         read_names(lsm->lists.plate, plate, side, name);
         const uint64_t *centre = name + side / 2;
-        vec8 sum = load8(named(bar, *centre, ROW_BAR));
+        HalfRow sum = half_load(named(bar, *centre, ROW_BAR));
         vec4 moment = {0};
         for (int o = 1; o <= side / 2; o++) {
-            vec8 left = load8(named(bar, centre[-o], ROW_BAR)),
-                 right = load8(named(bar, centre[o], ROW_BAR));
-            sum += left + right;
-            moment = WINDOW_MOMENT(moment, o, FIRST_FOUR(right) - FIRST_FOUR(left));
+            HalfRow left = half_load(named(bar, centre[-o], ROW_BAR)),
+                    right = half_load(named(bar, centre[o], ROW_BAR));
+            sum = half_add(sum, half_add(left, right));
+            moment = WINDOW_MOMENT(moment, o, half_first(right) - half_first(left));
         }
         real *out = lsm->rows.plate + plate * ROW_PLATE;
-        store8(out, sum);
+        half_store(out, sum);
         store4(out + 8, moment);
     }
 }
 
 /* The last four of a plate's row are never written: they stay zero. */
-SM_INLINE vec16 region_up(const Lsm *lsm, int region, int side)
+SM_INLINE Row region_up(const Lsm *lsm, int region, int side)
 {
     uint64_t name[LSM_MAX_SIDE];
     read_names(lsm->lists.region, region, side, name);
     const uint64_t *centre = name + side / 2;
     const real *plate = lsm->rows.plate;
-    vec16 sum = load16(named(plate, *centre, ROW_PLATE));
+    Row sum = row_load(named(plate, *centre, ROW_PLATE));
     vec4 moment = {0};
     for (int o = 1; o <= side / 2; o++) {
-        vec16 left = load16(named(plate, centre[-o], ROW_PLATE)),
-              right = load16(named(plate, centre[o], ROW_PLATE));
-        sum += left + right;
-        moment = WINDOW_MOMENT(moment, o, FIRST_FOUR(right) - FIRST_FOUR(left));
+        Row left = row_load(named(plate, centre[-o], ROW_PLATE)),
+            right = row_load(named(plate, centre[o], ROW_PLATE));
+        sum = row_add(sum, row_add(left, right));
+        moment = WINDOW_MOMENT(moment, o, row_first(right) - row_first(left));
     }
-    return sum + widen_last(moment);
+    return row_add_four(sum, 1, moment);
 }
 
-/* A transform's row is (q, Rz, Ry, Rx): each pass uses the last vector up. What a pass leaves in
- * the last vector is not read again. */
+/* A transform's row is (q, Rz, Ry, Rx): each pass uses the last four up, and subtracts their moment
+ * from the first. What a pass leaves in the last four is not read again. */
 SM_INLINE void bars_down(const Lsm *lsm, long first, long last, int side)
 {
     for (long bar = first; bar < last; bar++) {
@@ -109,14 +86,14 @@ SM_INLINE void bars_down(const Lsm *lsm, long first, long last, int side)
         read_names(lsm->lists.bar, bar, side, name);
         const uint64_t *centre = name + side / 2;
         const real *T = lsm->rows.transform;
-        vec16 sum = load16(named(T, *centre, ROW_T));
-        vec4 moment = {0};
+        Row sum = row_load(named(T, *centre, ROW_T));
+        vec4 less = {0};
         for (int o = 1; o <= side / 2; o++) {
             const real *left = named(T, centre[-o], ROW_T), *right = named(T, centre[o], ROW_T);
-            sum += load16(left) + load16(right);
-            moment = WINDOW_MOMENT(moment, o, load4(right + 12) - load4(left + 12));
+            sum = row_add(sum, row_add(row_load(left), row_load(right)));
+            less = WINDOW_MOMENT(less, o, load4(left + 12) - load4(right + 12));
         }
-        store16(lsm->rows.bar + bar * ROW_BAR, sum - widen_first(moment));
+        row_store(lsm->rows.bar + bar * ROW_BAR, row_add_four(sum, 0, less));
     }
 }
 
@@ -127,16 +104,15 @@ SM_INLINE void plates_down(const Lsm *lsm, long first, long last, int side)
         read_names(lsm->lists.plate, plate, side, name);
         const uint64_t *centre = name + side / 2;
         const real *bar = lsm->rows.bar;
-        vec8 sum = load8(named(bar, *centre, ROW_BAR));
-        vec4 moment = {0};
+        HalfRow sum = half_load(named(bar, *centre, ROW_BAR));
+        vec4 less = {0};
         for (int o = 1; o <= side / 2; o++) {
             const real *left = named(bar, centre[-o], ROW_BAR),
                        *right = named(bar, centre[o], ROW_BAR);
-            sum += load8(left) + load8(right);
-            moment = WINDOW_MOMENT(moment, o, load4(right + 8) - load4(left + 8));
+            sum = half_add(sum, half_add(half_load(left), half_load(right)));
+            less = WINDOW_MOMENT(less, o, load4(left + 8) - load4(right + 8));
         }
-        store8(lsm->rows.plate_down + plate * ROW_PLATE_DOWN,
-               sum - __builtin_shufflevector(moment, (vec4){0}, 0, 1, 2, 3, 4, 4, 4, 4));
+        half_store(lsm->rows.plate_down + plate * ROW_PLATE_DOWN, half_add_four(sum, 0, less));
     }
 }
 
@@ -157,35 +133,35 @@ SM_INLINE vec4 particle_down(const Lsm *lsm, int region, int side)
 }
 
 /* Sums without moments, of all values of a row or of the first eight. */
-SM_INLINE vec16 plain_row(const int *list, long row, int side, const real *in)
+SM_INLINE Row plain_row(const int *list, long row, int side, const real *in)
 {
     uint64_t name[LSM_MAX_SIDE];
     read_names(list, row, side, name);
-    vec16 sum = load16(named(in, name[0], 16));
-    for (int i = 1; i < side; i++) sum += load16(named(in, name[i], 16));
+    Row sum = row_load(named(in, name[0], 16));
+    for (int i = 1; i < side; i++) sum = row_add(sum, row_load(named(in, name[i], 16)));
     return sum;
 }
 
-SM_INLINE vec8 plain_half_row(const int *list, long row, int side, const real *in, int width)
+SM_INLINE HalfRow plain_half_row(const int *list, long row, int side, const real *in, int width)
 {
     uint64_t name[LSM_MAX_SIDE];
     read_names(list, row, side, name);
-    vec8 sum = load8(named(in, name[0], width));
-    for (int i = 1; i < side; i++) sum += load8(named(in, name[i], width));
+    HalfRow sum = half_load(named(in, name[0], width));
+    for (int i = 1; i < side; i++) sum = half_add(sum, half_load(named(in, name[i], width)));
     return sum;
 }
 
 SM_INLINE void plain_up(const int *list, long first, long last, int side, const real *in, real *out)
 {
     for (long row = first; row < last; row++)
-        store16(out + row * 16, plain_row(list, row, side, in));
+        row_store(out + row * 16, plain_row(list, row, side, in));
 }
 
 SM_INLINE void plain_down(const int *list, long first, long last, int side, const real *in,
                           int in_width, real *out, int out_width)
 {
     for (long row = first; row < last; row++)
-        store8(out + row * out_width, plain_half_row(list, row, side, in, in_width));
+        half_store(out + row * out_width, plain_half_row(list, row, side, in, in_width));
 }
 
 SM_INLINE void subsums_up_of(const Lsm *lsm, int layer, bool plain, int side)
@@ -233,17 +209,17 @@ static void subsums_down(const Lsm *lsm, int layer, bool plain){
 #undef CALL
 }
 
-SM_INLINE void regions_of(const Lsm *lsm, const int *region, bool plain, vec16 *out, int side)
+SM_INLINE void regions_of(const Lsm *lsm, const int *region, bool plain, Row *out, int side)
 {
     for (int lane = 0; lane < SM_LANES; lane++)
-        out[lane] = region[lane] < 0 ? (vec16){0}
+        out[lane] = region[lane] < 0 ? (Row){0}
                     : plain ? plain_row(lsm->lists.region, region[lane], side, lsm->rows.plate)
                             : region_up(lsm, region[lane], side);
 }
 
 void lsm_list_kernels_regions(const Lsm *lsm, const int *region, bool plain, vec sum[12])
 {
-    vec16 rows[SM_LANES];
+    Row rows[SM_LANES];
     const real *row[SM_LANES];
 #define CALL(side)                                                                                 \
     if (plain)                                                                                     \
@@ -270,8 +246,9 @@ SM_INLINE void particles_of(const Lsm *lsm, const int *region, bool plain, real 
     for (int lane = 0; lane < SM_LANES; lane++) {
         if (region[lane] < 0) continue;
         if (plain) {
-            vec8 sum = plain_half_row(lsm->lists.region, region[lane], side, lsm->rows.plate_down,
-                                      ROW_PLATE_DOWN);
+            real sum[8];
+            half_store(sum, plain_half_row(lsm->lists.region, region[lane], side,
+                                           lsm->rows.plate_down, ROW_PLATE_DOWN));
             for (int i = 0; i < 6; i++) out[i][lane] = sum[i / 3 * 4 + i % 3];
         } else {
             vec4 sum = particle_down(lsm, region[lane], side);

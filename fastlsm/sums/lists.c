@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "../../lib/simd/rigid_lanes.h"
+#include "../../lib/simd/rows.h"
 
 enum { LAYER_BLOCKS = 24 }; /* layers of about this size stay in the L2 cache */
 
@@ -122,7 +123,7 @@ static void keep_velocities(const Lsm *lsm, long tile, const real *down)
     for (int lane = 0; lane < SM_LANES; lane++) {
         int slot = lsm->tile_slot[tile * SM_LANES + lane];
         if (slot >= 0)
-            store8(lsm->rows.transform + (slot + 1) * (long)ROW_T, load8(row + lane * 8));
+            half_store(lsm->rows.transform + (slot + 1) * (long)ROW_T, half_load(row + lane * 8));
     }
 }
 
@@ -145,10 +146,10 @@ static void copy_regions(const Lsm *lsm, int layer, bool plain)
         real *out = lsm->rows.transform + (to + 1) * (long)ROW_T;
         const real *in = lsm->rows.transform + (from + 1) * (long)ROW_T;
         if (plain) {
-            store8(out, load8(in));
+            half_store(out, half_load(in));
             continue;
         }
-        store16(out, load16(in));
+        row_store(out, row_load(in));
         for (int d = 0; d < 3; d++) /* column d of R is vector 3 - d of the row */
             store4(out, load4(out) + (real)(a[d] - b[d]) * load4(in + 4 * (3 - d)));
     }

@@ -10,7 +10,7 @@ SM_INLINE const int *members(const int *list, int name, int side)
 }
 
 /* Rows are summed on their own first, so that single precision adds numbers of like size. */
-static vec16 region_up(const Lsm *lsm, int region)
+static Row region_up(const Lsm *lsm, int region)
 {
     int side = lsm->side, w = lsm->w;
     const int *plate = lsm->lists.region + (long)region * side;
@@ -32,9 +32,10 @@ static vec16 region_up(const Lsm *lsm, int region)
             Y += sum[2];
             Z += sum[3];
         }
-    vec8 low = __builtin_shufflevector(C, X, 0, 1, 2, 3, 4, 5, 6, 7);
-    vec8 high = __builtin_shufflevector(Y, Z, 0, 1, 2, 3, 4, 5, 6, 7);
-    return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    real row[16];
+    const vec4 four[4] = {C, X, Y, Z};
+    for (int i = 0; i < 4; i++) store4(row + 4 * i, four[i]);
+    return row_load(row);
 }
 
 static vec4 particle_down(const Lsm *lsm, int region)
@@ -78,12 +79,12 @@ static void tile_sums(const Lsm *lsm, long tile, bool plain, vec sum[12])
         lsm_list_kernels.tile(lsm, tile, plain, sum);
         return;
     }
-    vec16 rows[SM_LANES];
+    Row rows[SM_LANES];
     const real *row[SM_LANES];
     int region[SM_LANES];
     tile_regions(lsm, tile, region);
     for (int lane = 0; lane < SM_LANES; lane++) {
-        rows[lane] = region[lane] < 0 ? (vec16){0} : region_up(lsm, region[lane]);
+        rows[lane] = region[lane] < 0 ? (Row){0} : region_up(lsm, region[lane]);
         row[lane] = (const real *)&rows[lane];
     }
     sums_of_rows(row, false, sum);

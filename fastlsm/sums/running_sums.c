@@ -19,19 +19,12 @@ typedef struct {
     int from, to;
 } Level;
 
-/* `v` as the first or second half of eight values, zero elsewhere. */
-SM_INLINE vec8 half(vec4 v, int second)
-{
-    return second ? __builtin_shufflevector(v, (vec4){0}, 4, 4, 4, 4, 0, 1, 2, 3)
-                  : __builtin_shufflevector(v, (vec4){0}, 0, 1, 2, 3, 4, 4, 4, 4);
-}
-
 /* One row of a running, in two halves, into `out`: its base, moved on, and its terms. */
 SM_INLINE void running_row(const Lsm *lsm, const LsmRunningList *running, long row, Level level,
                            real *out)
 {
     const real *base = level.out + (long)(running->base[row] / 2) * WIDTH;
-    vec8 sum[2] = {{0}, {0}};
+    HalfRow sum[2] = {0};
     vec4 moment = {0};
     if (level.moments != NONE)
         moment -= (real)(running->base[row] & 1) * load4(base + 4 * level.from);
@@ -41,16 +34,21 @@ SM_INLINE void running_row(const Lsm *lsm, const LsmRunningList *running, long r
         for (int i = 0; i < 2; i++, term++) {
             const real *member = level.in + (long)term->row * level.in_width,
                        *factor = lsm->running_factor[term->factor];
-            sum[0] += factor[0] * (level.vectors == 1 ? half(load4(member), 0) : load8(member));
-            if (level.vectors == 4) sum[1] += factor[0] * load8(member + 8);
+            if (level.vectors == 1)
+                sum[0] = half_add_four(sum[0], 0, factor[0] * load4(member));
+            else
+                sum[0] = half_add_times(sum[0], factor[0], half_load(member));
+            if (level.vectors == 4)
+                sum[1] = half_add_times(sum[1], factor[0], half_load(member + 8));
             if (level.moments != NONE) moment += factor[1] * load4(member + 4 * level.from);
         }
     } while (term < end);
-    if (level.moments == UP) sum[level.to / 2] += half(moment, level.to % 2);
-    if (level.moments == DOWN) sum[level.to / 2] -= half(moment, level.to % 2);
+    HalfRow *to = &sum[level.to / 2];
+    if (level.moments == UP) *to = half_add_four(*to, level.to % 2, moment);
+    if (level.moments == DOWN) *to = half_add_four(*to, level.to % 2, -moment);
     /* what is large last: it is rounded once */
-    store8(out, load8(base) + sum[0]);
-    store8(out + 8, load8(base + 8) + sum[1]);
+    half_store(out, half_add(half_load(base), sum[0]));
+    half_store(out + 8, half_add(half_load(base + 8), sum[1]));
 }
 
 /* Bars or plates `first` .. `last` - 1. */

@@ -55,27 +55,9 @@ SM_INLINE vec4 load4(const real *p)
     return *(const vec4_loose *)p;
 }
 
-SM_INLINE vec8 load8(const real *p)
-{
-    return *(const vec8_loose *)p;
-}
-
-SM_INLINE vec16 load16(const real *p)
-{
-    return *(const vec16_loose *)p;
-}
-
 SM_INLINE void store4(real *p, vec4 v)
 {
     *(vec4_loose *)p = v;
-}
-SM_INLINE void store8(real *p, vec8 v)
-{
-    *(vec8_loose *)p = v;
-}
-SM_INLINE void store16(real *p, vec16 v)
-{
-    *(vec16_loose *)p = v;
 }
 
 SM_INLINE vec lanes_set(real value)

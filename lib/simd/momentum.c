@@ -21,7 +21,6 @@ enum { RUN_BLOCKS = 32, RUNS_AT_ONCE = 64 };
 static const double LEARNT = 0.125, LASTING = 0.97;
 
 typedef real RunSum[SM_LANES][SUMS];
-typedef double wide __attribute__((vector_size(SUMS * sizeof(double)), aligned(sizeof(double))));
 
 Momentum *momentum_build(long blocks, long bodies, bool abreast, int every, int threads)
 {
@@ -324,16 +323,14 @@ static void add_run(const Momentum *m, long run, RunSum total, MomentumPiece *pi
 {
     Lane of[SM_LANES];
     long same = m->run[run].piece;
-    wide all = {0};
+    double all[SUMS] = {0};
     if (same < 0) lanes_of(m, m->run[run].first, of);
     for (int lane = 0; lane < SM_LANES; lane++) {
-        wide sum = __builtin_convertvector(load16(total[lane]), wide);
-        if (same >= 0)
-            all += sum;
-        else if (of[lane].piece >= 0)
-            *(wide *)piece[of[lane].piece].sum += sum;
+        double *sum = same >= 0 ? all : piece[of[lane].piece].sum;
+        if (same < 0 && of[lane].piece < 0) continue;
+        for (int i = 0; i < SUMS; i++) sum[i] += (double)total[lane][i];
     }
-    if (same >= 0) *(wide *)piece[same].sum += all;
+    for (int i = 0; i < SUMS && same >= 0; i++) piece[same].sum[i] += all[i];
 }
 
 /* Sums of all pieces of a body, corrected where they are known; the first of them. */

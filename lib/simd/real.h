@@ -52,14 +52,10 @@ typedef lane_int ivec __attribute__((vector_size(SM_LANES * sizeof(real))));
 typedef real part_vec __attribute__((vector_size(SM_PART * sizeof(real))));
 
 typedef real vec4 __attribute__((vector_size(4 * sizeof(real))));
-typedef real vec8 __attribute__((vector_size(8 * sizeof(real))));
-typedef real vec16 __attribute__((vector_size(16 * sizeof(real))));
 
 /* The same in memory at any place where a real may be. Accesses through these alias reals only, so
  * that a store does not make the compiler fetch every pointer again. */
 typedef real vec_loose __attribute__((vector_size(SM_LANES * sizeof(real)), aligned(sizeof(real))));
 typedef real vec4_loose __attribute__((vector_size(4 * sizeof(real)), aligned(sizeof(real))));
-typedef real vec8_loose __attribute__((vector_size(8 * sizeof(real)), aligned(sizeof(real))));
-typedef real vec16_loose __attribute__((vector_size(16 * sizeof(real)), aligned(sizeof(real))));
 
 #endif

@@ -1,6 +1,6 @@
 /* Operations on lanes against what they do to one lane after the other, in both precisions
  * (SM_REAL_BITS). */
-#include "lanes.h"
+#include "rows.h"
 
 #include <float.h>
 
@@ -58,9 +58,35 @@ TEST(loads_and_stores_take_any_alignment)
         assert_memory_equal(to + at, from + at, 3 * SM_LANES * sizeof *to);
         assert_true(to[at + 3 * SM_LANES] == 0 && (at == 0 || to[at - 1] == 0));
         store4(to + at, load4(from));
-        store8(to + at + 4, load8(from + 4));
-        store16(to + at + 12, load16(from + 12));
+        half_store(to + at + 4, half_load(from + 4));
+        row_store(to + at + 12, row_load(from + 12));
         assert_memory_equal(to + at, from, 28 * sizeof *to);
+    }
+}
+
+TEST(rows_are_added_whole_and_in_fours)
+{
+    real from[16], half[8], row[16];
+    number(from, 16);
+    vec4 first = load4(from + 1), last = load4(from + 9);
+    half_store(half, half_of(first, last));
+    for (int i = 0; i < 8; i++) assert_true(half[i] == (i < 4 ? from[i + 1] : from[i + 5]));
+    store4(half, half_first(half_load(from + 3)));
+    store4(half + 4, row_first(row_load(from)));
+    for (int i = 0; i < 8; i++) assert_true(half[i] == (i < 4 ? from[i + 3] : from[i - 4]));
+    half_store(half, half_add(half_load(from), half_load(from + 8)));
+    row_store(row, row_add(row_load(from), row_load(from)));
+    for (int i = 0; i < 8; i++) assert_true(half[i] == from[i] + from[i + 8]);
+    for (int i = 0; i < 16; i++) assert_true(row[i] == 2 * from[i]);
+    half_store(half, half_add_times(half_load(from), 3, half_load(from + 8)));
+    for (int i = 0; i < 8; i++) assert_true(half[i] == from[i] + 3 * from[i + 8]);
+    for (int end = 0; end < 2; end++) {
+        half_store(half, half_add_four(half_load(from), end, last));
+        for (int i = 0; i < 8; i++)
+            assert_true(half[i] == from[i] + (i / 4 == end ? from[9 + i % 4] : 0));
+        row_store(row, row_add_four(row_load(from), end, first));
+        for (int i = 0; i < 16; i++)
+            assert_true(row[i] == from[i] + (i / 4 == 3 * end ? from[1 + i % 4] : 0));
     }
 }
 
