@@ -39,6 +39,12 @@ static void fill_slots(const OctTree *tree, const OctRegions *regions, const dou
         for (long block = 0; block < oct->blocks; block++) oct_block_inverse(oct, i, block);
 }
 
+long oct_share_start(long block, long blocks)
+{
+    long start = (block + OCT_TOGETHER - 1) / OCT_TOGETHER * OCT_TOGETHER;
+    return start < blocks ? start : blocks;
+}
+
 /* Shares the blocks among threads by what their lists hold. */
 static void share_blocks(Oct *oct, long blocks)
 {
@@ -55,7 +61,7 @@ static void share_blocks(Oct *oct, long blocks)
     for (int t = 1; t < threads; t++) {
         for (; block < blocks && before * threads < all * t; block++)
             before += per_block + first[(block + 1) * SM_LANES] - first[block * SM_LANES];
-        oct->share[t] = block;
+        oct->share[t] = oct_share_start(block, blocks);
     }
     oct->share[threads] = blocks;
 }

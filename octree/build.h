@@ -4,10 +4,11 @@
 
 #include "state.h"
 
-#define oct_build SM_NAME(oct_build)
-#define oct_free  SM_NAME(oct_free)
-#define oct_bytes SM_NAME(oct_bytes)
-#define oct_shape SM_NAME(oct_shape)
+#define oct_build       SM_NAME(oct_build)
+#define oct_free        SM_NAME(oct_free)
+#define oct_bytes       SM_NAME(oct_bytes)
+#define oct_shape       SM_NAME(oct_shape)
+#define oct_share_start SM_NAME(oct_share_start)
 
 /* Bodies at rest, all in one place: simulation nodes at their cells' centres, counted in finest
  * cells from the corner of voxel (0,0,0). `mass` is [leaves] kg, positive, finite. Tree and regions
@@ -19,5 +20,9 @@ long oct_bytes(const Oct *oct);
 
 /* Sets the rest shapes of a plastic body's regions; `S` is [leaves][9]. */
 void oct_shape(Oct *oct, long body, const double (*S)[9]);
+
+/* Where the share of a thread begins that is to begin at `block`, of `blocks`: no group of blocks
+ * that are matched together is cut. */
+long oct_share_start(long block, long blocks);
 
 #endif

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "body_arrays.h"
+#include "build.h"
 #include "ghosts.h"
 
 /* Half as many again as there are now, and some more for small bodies. */
@@ -52,7 +53,8 @@ static void make_room(Oct *oct, const OctTree *tree, OctDynamicBody *c)
         c->dirty = sm_widen(c->dirty, c->blocks, oct->block_room, sizeof *c->dirty, 0);
         c->blocks = oct->block_room;
     }
-    for (int t = 1; t <= oct->threads; t++) oct->share[t] = oct->blocks * t / oct->threads;
+    for (int t = 1; t <= oct->threads; t++)
+        oct->share[t] = oct_share_start(oct->blocks * t / oct->threads, oct->blocks);
 }
 
 /* The place of a node that has no children any more goes to the last of its level. */

@@ -120,40 +120,80 @@ SM_INLINE void store_transforms(const OctTask *task, long block, const vec c[3],
     lanes_to_rows(field, row);
 }
 
-/* Copies: A and R of the fast method stay in registers. */
-SM_INLINE void rotate_jacobi(const vec A[9], short *last, real *stretch, vec R[9])
-{
-    vec from[9], to[9];
-    lanes_copy(9, A, from);
-    polar_jacobi_lanes(from, LANES_ALL, last, stretch, to);
-    lanes_copy(9, to, R);
-}
-
-static void match(OctTask *task, long first, long last)
+/* c_r, and A_r as it is to be rotated, of a block's regions. */
+SM_INLINE void block_moments(OctTask *task, long block, vec c[3], vec A[9])
 {
     const Oct *oct = task->oct;
-    OctState *body = task->body;
-    for (long block = first; block < last; block++) {
-        if (!oct->live[block]) continue;
-        vec S[16], c[3], A[9], R[9], F[9];
-        const OctConst *k = &oct->block[block];
-        region_sums(task, block, S);
-        sm_lap(task->laps, SM_FAST_SUM);
-        centre_moments(S, k, c, A);
-        if (oct->damp_now) store3(task->rows->centre + block * 3 * SM_LANES, c);
-        if (body->plastic) plastic_moments(body->plastic + block * 9 * SM_LANES, A);
-        sm_lap(task->laps, SM_SHAPE_MATCHING);
-        short *before = body->last + block * 6 * SM_LANES;
-        if (oct->collinear_of[block] >= 0)
-            collinear_rotations(&oct->collinear[oct->collinear_of[block]], before, A);
-        if (body->stretch)
-            rotate_jacobi(A, before, body->stretch + block * 9 * SM_LANES, R);
-        else
-            polar_fast_lanes(A, LANES_ALL, POLAR_NARROW, before, R);
+    const OctState *body = task->body;
+    vec S[16];
+    region_sums(task, block, S);
+    sm_lap(task->laps, SM_FAST_SUM);
+    centre_moments(S, &oct->block[block], c, A);
+    if (oct->damp_now) store3(task->rows->centre + block * 3 * SM_LANES, c);
+    if (body->plastic) plastic_moments(body->plastic + block * 9 * SM_LANES, A);
+    sm_lap(task->laps, SM_SHAPE_MATCHING);
+    if (oct->collinear_of[block] >= 0)
+        collinear_rotations(&oct->collinear[oct->collinear_of[block]],
+                            body->last + block * 6 * SM_LANES, A);
+}
+
+/* The transforms of a block's regions from their rotations. */
+SM_INLINE void block_transforms(OctTask *task, long block, const vec c[3], const vec A[9],
+                                const vec R[9])
+{
+    vec F[9];
+    sm_lap(task->laps, SM_POLAR);
+    if (task->body->plastic) plastic_block(task, block, A, R, F);
+    store_transforms(task, block, c, task->body->plastic ? F : R);
+    sm_lap(task->laps, SM_SHAPE_MATCHING);
+}
+
+/* By the paper's way to decompose. */
+static __attribute__((noinline)) void match_jacobi(OctTask *task, int blocks, const long *block)
+{
+    for (int t = 0; t < blocks; t++) {
+        OctState *body = task->body;
+        vec c[3], A[9], R[9];
+        block_moments(task, block[t], c, A);
+        polar_jacobi_lanes(A, LANES_ALL, body->last + block[t] * 6 * SM_LANES,
+                           body->stretch + block[t] * 9 * SM_LANES, R);
+        block_transforms(task, block[t], c, A, R);
+    }
+}
+
+_Static_assert((int)OCT_TOGETHER <= (int)POLAR_TILES, "polar_traces() takes no more");
+
+/* A group of blocks: the iterations of their rotations alternate, and need not wait for each other.
+ */
+static void match_group(OctTask *task, int blocks, const long *block)
+{
+    vec c[OCT_TOGETHER][3], A[OCT_TOGETHER][9], trace[OCT_TOGETHER];
+    PolarInvariants of[OCT_TOGETHER];
+    unsigned live[OCT_TOGETHER];
+    for (int t = 0; t < blocks; t++) {
+        block_moments(task, block[t], c[t], A[t]);
+        polar_invariants(A[t], &of[t]);
+        live[t] = LANES_ALL;
         sm_lap(task->laps, SM_POLAR);
-        if (body->plastic) plastic_block(task, block, A, R, F);
-        store_transforms(task, block, c, body->plastic ? F : R);
-        sm_lap(task->laps, SM_SHAPE_MATCHING);
+    }
+    polar_traces(blocks, of, live, trace);
+    for (int t = 0; t < blocks; t++) {
+        vec R[9];
+        polar_finish(A[t], &of[t], trace[t], LANES_ALL, POLAR_NARROW,
+                     task->body->last + block[t] * 6 * SM_LANES, R);
+        block_transforms(task, block[t], c[t], A[t], R);
+    }
+}
+
+/* Groups are cut where a share may be (build.h), so that they are the same for any threads. */
+static void match(OctTask *task, long first, long last)
+{
+    while (first < last) {
+        long block[OCT_TOGETHER], end = first + OCT_TOGETHER < last ? first + OCT_TOGETHER : last;
+        int blocks = 0;
+        for (; first < end; first++)
+            if (task->oct->live[first]) block[blocks++] = first;
+        (task->body->stretch ? match_jacobi : match_group)(task, blocks, block);
     }
 }
 

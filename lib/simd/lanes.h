@@ -88,6 +88,12 @@ SM_INLINE vec lanes_number(void)
 #define LANES_FROM(o) (o), (o) + 1, (o) + 2, (o) + 3
 #define LANES_SLIDES(F) F(1) F(2) F(3)
 #endif
+#if SM_LANES == 4
+#define LANES_MASK(b) {-((b)&1), -((b) >> 1 & 1), -((b) >> 2 & 1), -((b) >> 3 & 1)}
+static const ivec lanes_masks[16] __attribute__((unused)) = {
+    LANES_MASK(0), LANES_MASK(1), LANES_MASK(2),  LANES_MASK(3),  LANES_MASK(4),  LANES_MASK(5),  LANES_MASK(6),  LANES_MASK(7),
+    LANES_MASK(8), LANES_MASK(9), LANES_MASK(10), LANES_MASK(11), LANES_MASK(12), LANES_MASK(13), LANES_MASK(14), LANES_MASK(15)};
+#endif
 /* clang-format on */
 
 #if SM_VECTOR_BYTES == 64

@@ -3,6 +3,7 @@
 #define SM_LANES_AVX2_H
 
 #include <immintrin.h>
+#include <stdint.h>
 
 /* Zips of each half for itself are one instruction, others two. */
 #define LANES_HALVES
@@ -36,15 +37,31 @@ SM_INLINE bool lanes_any(ivec mask)
     return !_mm256_testz_si256((__m256i)mask, (__m256i)mask);
 }
 
+#if SM_REAL_BITS == 32
+/* Bit i of a number as byte i, all of whose bits are as it is: one instruction widens them. */
+#define LANES_BYTE(b, i) ((uint64_t)((b) >> (i)&1) * 0xff << 8 * (i))
+#define LANES_BYTES(b)                                                                             \
+    LANES_BYTE(b, 0) | LANES_BYTE(b, 1) | LANES_BYTE(b, 2) | LANES_BYTE(b, 3) | LANES_BYTE(b, 4) | \
+        LANES_BYTE(b, 5) | LANES_BYTE(b, 6) | LANES_BYTE(b, 7)
+#define LANES_BYTES_4(b) LANES_BYTES(b), LANES_BYTES(b + 1), LANES_BYTES(b + 2), LANES_BYTES(b + 3)
+#define LANES_BYTES_16(b)                                                                          \
+    LANES_BYTES_4(b), LANES_BYTES_4(b + 4), LANES_BYTES_4(b + 8), LANES_BYTES_4(b + 12)
+#define LANES_BYTES_64(b)                                                                          \
+    LANES_BYTES_16(b), LANES_BYTES_16(b + 16), LANES_BYTES_16(b + 32), LANES_BYTES_16(b + 48)
+static const uint64_t lanes_bytes[256] __attribute__((unused)) = {
+    LANES_BYTES_64(0), LANES_BYTES_64(64), LANES_BYTES_64(128), LANES_BYTES_64(192)};
+
 SM_INLINE ivec lanes_of_bits(unsigned lanes)
 {
-#if SM_REAL_BITS == 32
-    const ivec bit = {1, 2, 4, 8, 16, 32, 64, 128};
-#else
-    const ivec bit = {1, 2, 4, 8};
-#endif
-    return ((lane_int)lanes & bit) == bit;
+    const __m128i *bytes = (const __m128i *)(lanes_bytes + lanes);
+    return (ivec)_mm256_cvtepi8_epi32(_mm_loadl_epi64(bytes));
 }
+#else
+SM_INLINE ivec lanes_of_bits(unsigned lanes)
+{
+    return lanes_masks[lanes];
+}
+#endif
 
 SM_INLINE unsigned lanes_below(vec a, vec b)
 {

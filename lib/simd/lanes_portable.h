@@ -32,7 +32,6 @@ typedef lane_int native_ivec __attribute__((vector_size(16)));
     LANES_OF(f(LANES_LOW(a), LANES_LOW(b)), f(LANES_HIGH(a), LANES_HIGH(b)))
 #endif
 
-#define LANES_EQUAL(a, b) ((native_ivec)((a) == (b)))
 #define LANES_LESS(a, b)  ((native_ivec)((a) < (b)))
 
 /* Of lanes with `mask` set all over, and else 0. */
@@ -69,8 +68,7 @@ SM_INLINE bool lanes_any(ivec mask)
 
 SM_INLINE ivec lanes_of_bits(unsigned lanes)
 {
-    const ivec bit = {1, 2, 4, 8};
-    return LANES_BINARY(LANES_EQUAL, (lane_int)lanes & bit, bit);
+    return lanes_masks[lanes];
 }
 
 /* The lanes where a < b; a NaN is not. */

@@ -192,16 +192,6 @@ SM_INLINE unsigned polar_rotation(const vec A[9], const PolarInvariants *of, vec
              lanes_below(of->square, lanes_set((real)1e16)));
 }
 
-/* R of one tile, and its ties. */
-SM_INLINE unsigned polar_quartic(const vec A[9], unsigned live, vec R[9])
-{
-    PolarInvariants of;
-    vec l;
-    polar_invariants(A, &of);
-    polar_trace(1, &of, &live, &l);
-    return polar_rotation(A, &of, l, live, POLAR_NARROW, R);
-}
-
 /* Redoes the lanes of `tie` one by one, keeping near the last rotation. */
 static __attribute__((noinline)) void polar_mend(const vec A[9], unsigned tie, const vec last[9],
                                                  vec R[9])

@@ -74,16 +74,6 @@ SM_INLINE void polar_finish(const vec A[9], const PolarInvariants *of, vec l, un
     last_store(last, R);
 }
 
-/* The same of one tile alone, all of it. */
-SM_INLINE void polar_fast_lanes(const vec A[9], unsigned live, real polish, short *last, vec R[9])
-{
-    PolarInvariants of;
-    vec l;
-    polar_invariants(A, &of);
-    polar_trace(1, &of, &live, &l);
-    polar_finish(A, &of, l, live, polish, last, R);
-}
-
 /* The paper's way (fastlsm section 4), lane by lane, from the eigenvectors `stretch` of the last
  * step, [9][lanes]; zero in lanes that are not live. Updates `last` and `stretch`. Returns the
  * sweeps, summed over live lanes. */
