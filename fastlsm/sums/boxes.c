@@ -161,7 +161,7 @@ SM_INLINE vec window_y(const Around *in, long column, int w, bool moving, int f,
     } else {
         window_sum(in->row + 1, at, w, &sum, moment);
     }
-    if (w >= RUNNING && in->running) {
+    if (w >= RUNNING && (moving || in->running)) {
         lanes_store(kept, sum);
         if (moment) lanes_store(kept_moment, *moment);
     }
@@ -183,7 +183,7 @@ SM_INLINE vec window_y_less(const Around *in, long column, int w, bool moving, i
     } else {
         window_less(in->row + 1, at, weighed, w, &sum, &rest);
     }
-    if (w >= RUNNING && in->running) {
+    if (w >= RUNNING && (moving || in->running)) {
         lanes_store(in->window + at, sum);
         lanes_store(in->window + weighed, rest);
     }
@@ -249,7 +249,7 @@ SM_INLINE void stage_z_up(const Lsm *lsm, long block, int w, bool plain, bool mo
         move_z_up(lsm, block, w, plain, d, kept, sum);
     else
         sum_z_up(lsm, block, w, plain, d, sum);
-    for (int k = 0; k < n && w >= RUNNING && lsm->box->running; k++)
+    for (int k = 0; k < n && w >= RUNNING && (moving || lsm->box->running); k++)
         lanes_store(kept + (3 * k + d) * SM_LANES, sum[k]);
     for (int k = 0; k < n; k++) sum[k] = through(lsm, block, w, sum[k]);
 }
@@ -374,20 +374,28 @@ static __attribute__((noinline)) void keep_down(const Lsm *lsm, long block, cons
         lsm_lists_keep_down(lsm, block, down);
 }
 
-/* The stage up along y, 9 -> 12 values, and `solve` for a group of blocks of a row, into the ring
- * `below`. */
+/* The stage up along y for a column: 9 -> 12 values, of damping 12. */
+SM_INLINE void stage_y_up(const Around *in, long column, int w, bool plain, bool moving,
+                          vec sum[12])
+{
+#pragma GCC unroll 12
+    for (int f = 3; f < 12; f++)
+        if (plain || f < 9)
+            sum[plain ? f : stage_value(f)] = window_y(in, column, w, moving, f, 0, NULL);
+#pragma GCC unroll 3
+    for (int d = 0; d < 3; d++) {
+        vec moment = lanes_set(0);
+        sum[d] = window_y(in, column, w, moving, d, 9 + d, plain ? NULL : &moment);
+        if (!plain) sum[stage_value(9 + d)] = moment;
+    }
+}
+
+/* The stage up along y, and `solve` for a group of blocks of a row, into the ring `below`. */
 SM_INLINE void solve_group(Lsm *lsm, const Around *in, const BlockRun *run, int i, int blocks,
                            int layer, int w, bool plain, bool moving, real *row, SmLaps *laps)
 {
     vec sums[TILE_GROUP][12];
-    for (int k = 0; k < blocks; k++) {
-        vec *sum = sums[k];
-        for (int f = 0; f < (plain ? 12 : 9); f++) {
-            vec *moment = plain || f > 2 ? NULL : &sum[stage_value(9 + f)];
-            sum[plain ? f : stage_value(f)] =
-                window_y(in, run->column + i + k, w, moving, f, 9 + f, moment);
-        }
-    }
+    for (int k = 0; k < blocks; k++) stage_y_up(in, run->column + i + k, w, plain, moving, sums[k]);
     long block = run->first + i;
     real *down = row + (run->column + i) * (long)BLOCK;
     for (int k = 0; k < blocks; k++)
