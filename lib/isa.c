@@ -40,7 +40,8 @@ static bool has_sse2(void)
 static bool has_avx2(void)
 {
     return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
-           __builtin_cpu_supports("bmi2");
+           __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2") &&
+           __builtin_cpu_supports("popcnt");
 }
 
 static bool has_avx512(void)
@@ -51,7 +52,7 @@ static bool has_avx512(void)
 }
 
 static const Isa isas[] = {{"sse2", "", has_sse2},
-                           {"avx2", " (AVX2, FMA, BMI2)", has_avx2},
+                           {"avx2", " (AVX2, FMA, BMI, POPCNT)", has_avx2},
                            {"avx512", " (AVX-512 F, BW, CD, DQ, VL)", has_avx512}};
 #endif
 

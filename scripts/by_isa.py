@@ -61,14 +61,16 @@ def times(program, scenes):
 def state(program, scene, isa, threads):
     """Steps and hash of a scene's last state."""
     said = run(program, "run", scene, "--hash", "--no-output", "--quiet", "--threads", str(threads), "--isa", isa)
-    words = next(line for line in said.splitlines() if line.startswith("state after ")).split()
-    return words[2], words[4]
+    words = next((line for line in said.splitlines() if line.startswith("state after ")), "").split()
+    return (words[2], words[4]) if words else ("-", "INVALID")
 
 
 def hashes(program, scenes):
     version = run(program, "--version")
     sets = re.sub(r" \(in use\)| \w+ \(not[^)]*\)", "", version.splitlines()[1]).split()[2:]
-    print(f"State at the end of each scene (`run --hash`), by instruction set: {version.split()[1]}, {date.today()}.\n")
+    cpu = next(line.split(None, 1)[1] for line in run(program, "info").splitlines() if line.split()[:1] == ["processor"])
+    print(f"State at the end of each scene (`run --hash`), by instruction set: {version.split()[1]}, {date.today()}, "
+          f"{cpu}.\n")
     lines, agree = [], True
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         found = {(scene, threads, isa): pool.submit(state, program, scene, isa, threads)
@@ -77,7 +79,7 @@ def hashes(program, scenes):
             by_threads = [[found[scene, threads, isa].result() for isa in sets] for threads in THREADS]
             steps = by_threads[0][0][0]
             same = all(other == by_threads[0] for other in by_threads)
-            agree = agree and same
+            agree = agree and same and not any(text == "INVALID" for states in by_threads for _, text in states)
             for threads, states in zip(["1, 2, 3"] if same else THREADS, by_threads):
                 lines.append([scene, steps, str(threads), *(text for _, text in states)])
     write(["scene", "steps", "threads", *sets], lines)

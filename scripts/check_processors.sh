@@ -27,11 +27,12 @@ arm_libraries() {
     local apt=$1/apt
     local -a options=(-qq -o APT::Architecture=arm64 -o APT::Architectures::=arm64 -o Dir::State="$apt/state"
         -o Dir::State::status="$apt/status" -o Dir::Cache="$apt/cache" -o APT::Sandbox::User=)
-    [ ! -e "$1/usr/include/gsl" ] || return 0
+    [ ! -e "$1/whole" ] || return 0
     mkdir -p "$apt/state/lists/partial" "$apt/cache/archives/partial" && : >"$apt/status" &&
         apt-get "${options[@]}" update && (cd "$apt" && apt-get "${options[@]}" download \
         libcmocka-dev:arm64 libcmocka0:arm64 libgsl-dev:arm64 libgsl27:arm64 libgslcblas0:arm64) || return
     for archive in "$apt"/*.deb; do dpkg -x "$archive" "$1" || return; done
+    : >"$1/whole"
 }
 
 arm() {

@@ -6,6 +6,12 @@
 string(TOUPPER "${CMAKE_BUILD_TYPE}" build_type)
 get_target_property(flags shapebench_flags INTERFACE_COMPILE_OPTIONS)
 list(JOIN flags " " flags)
+foreach(isa ${isas}) # the kernels' own
+  list(JOIN flags_of_${isa} " " own)
+  if(own)
+    string(APPEND flags " ${isa}: ${own}")
+  endif()
+endforeach()
 string(STRIP "${CMAKE_C_FLAGS} ${CMAKE_C_FLAGS_${build_type}} ${OpenMP_C_FLAGS} ${flags}" flags)
 add_custom_target(provenance
   COMMAND ${CMAKE_COMMAND} -D "SOURCE=${CMAKE_SOURCE_DIR}" -D "HEADER=${CMAKE_BINARY_DIR}/provenance.h"

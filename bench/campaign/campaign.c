@@ -435,6 +435,6 @@ void bench_campaign_build(BenchCampaign *campaign)
     const BenchMachine *machine = &campaign->machine;
     char *build = (char *)campaign->plan + campaign->type->build, changed[32] = "";
     if (machine->git_dirty) snprintf(changed, sizeof changed, " changed %016llx", hash_program());
-    snprintf(build, BENCH_CAMPAIGN_BUILD, "%s %.16s%s, %s %s", machine->version,
-             machine->git_commit, changed, machine->compiler, machine->flags);
+    snprintf(build, BENCH_CAMPAIGN_BUILD, "%s %.16s%s, %s, %s %s", machine->version,
+             machine->git_commit, changed, machine->isa, machine->compiler, machine->flags);
 }

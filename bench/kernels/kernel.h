@@ -50,7 +50,9 @@ typedef struct {
     int set;        /* neighbours of equal `set` share a body, and are timed in turn */
     int side;       /* of the body, if that is a cube (tree_body.h names others) */
     int w, part;    /* half width of regions; which of the kind's parts */
-    double at_most; /* ns an item wanted on one core in single precision; 0: no limit */
+    double at_most; /* ns an item wanted on one core in single precision, of integers or by AVX-512;
+                       0: no limit */
+    double avx2;    /* the share of the floor that is wanted by AVX2; 0: no limit */
     SmSummation summation;
     SmPolarMethod polar;
     OctWeighting weighting;

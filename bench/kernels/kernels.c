@@ -25,9 +25,9 @@
     {                                                                                              \
         label, of, &bench_cube_kernels, number, n, width, .part = BENCH_CUBE_STEP, __VA_ARGS__     \
     }
-#define SCENE(label, number, ns)                                                                   \
+#define SCENE(label, number, ns, share)                                                            \
     {                                                                                              \
-        label, "cases", &bench_scene_kernels, number, .at_most = (ns)                              \
+        label, "cases", &bench_scene_kernels, number, .at_most = (ns), .avx2 = (share)             \
     }
 #define PART(number, of, label, which, ...)                                                        \
     {                                                                                              \
@@ -73,7 +73,7 @@ static const BenchKernel kernels[] = {
     SUMS(3),
     SUMS(5),
     SUMS(8),
-    {"polar-fast", "polar", &bench_polar_kernels, 10, .part = BENCH_POLAR_BATCH},
+    {"polar-fast", "polar", &bench_polar_kernels, 10, .part = BENCH_POLAR_BATCH, .avx2 = 0.35},
     {"polar-jacobi-cold", "polar", &bench_polar_kernels, 10, .part = BENCH_POLAR_COLD},
     {"polar-jacobi-warm", "polar", &bench_polar_kernels, 10, .part = BENCH_POLAR_WARM},
     {"polar-robust", "polar", &bench_polar_kernels, 10, .part = BENCH_POLAR_ROBUST},
@@ -82,22 +82,22 @@ static const BenchKernel kernels[] = {
     {"voxeliser", "voxeliser", &bench_surface_kernels, 12, .part = BENCH_VOXELISE},
     {"embedding", "embedding", &bench_surface_kernels, 12, .part = BENCH_EMBED},
     {"octree-surface", "embedding", &bench_surface_kernels, 12, .part = BENCH_CARRY},
-    STEP("cube32-w1", "cases", 20, 32, 1, .at_most = 8),
+    STEP("cube32-w1", "cases", 20, 32, 1, .at_most = 8, .avx2 = 0.35),
     STEP("cube64-w1", "cases", 21, 64, 1, .at_most = 8),
     STEP("cube64-w1-2threads", "cases", 21, 64, 1, .threads = 2, .base = "cube64-w1",
          .wanted = 1.85),
     STEP("cube64-w1-double", "cases", 21, 64, 1, .doubled = true, .base = "cube64-w1",
          .wanted = 2.2),
-    STEP("cube32-w5", "cases", 22, 32, 5, .at_most = 12),
+    STEP("cube32-w5", "cases", 22, 32, 5, .at_most = 12, .avx2 = 0.28),
     STEP("cube128-w2", "cases", 23, 128, 2, .at_most = 13),
-    STEP("cube64-w1-damping", "cases", 24, 64, 1, .damping = 0.1, .at_most = 15),
+    STEP("cube64-w1-damping", "cases", 24, 64, 1, .damping = 0.1, .at_most = 15, .avx2 = 0.28),
     STEP("cube64-w1-jacobi", "cases", 25, 64, 1, .polar = SM_POLAR_JACOBI),
-    SCENE("statue-solid", 30, 30),
-    SCENE("statue-shell", 31, 60),
-    SCENE("infant", 32, 45),
-    SCENE("penguin", 33, 50),
-    SCENE("penguins", 34, 44),
-    SCENE("penguins-free", 35, 20),
+    SCENE("statue-solid", 30, 30, 0.14),
+    SCENE("statue-shell", 31, 60, 0),
+    SCENE("infant", 32, 45, 0.10),
+    SCENE("penguin", 33, 50, 0.13),
+    SCENE("penguins", 34, 44, 0),
+    SCENE("penguins-free", 35, 20, 0),
     STEP("scale-1e4", "scaling", 40, 22, 1, .at_most = 0),
     STEP("scale-1e5", "scaling", 40, 46, 1, .base = "scale-1e4", .wanted = 1.25),
     STEP("scale-1e6", "scaling", 40, 100, 1, .base = "scale-1e4", .wanted = 1.25),
@@ -105,10 +105,11 @@ static const BenchKernel kernels[] = {
     CUBE("setup-64", 41, 64, .at_most = 0),
     CUBE("setup-128", 42, 128, .at_most = 150),
     CUBE("setup-128-2threads", 43, 128, .threads = 2),
-    CUBE("setup-256", 44, 256, .large = true),
+    CUBE("setup-256", 44, 256, .at_most = 350, .large = true),
     CUBE("setup-464", 45, 464, .huge = true), /* 10^8 particles */
     PARTS(50, BENCH_HAND, "oct-hand"),
-    PART(50, BENCH_HAND, "oct-hand-step", BENCH_TREE_WHOLE, .at_most = 60e3, .paper = "4.5 ms"),
+    PART(50, BENCH_HAND, "oct-hand-step", BENCH_TREE_WHOLE, .at_most = 60e3, .avx2 = 0.20,
+         .paper = "4.5 ms"),
     PART(50, BENCH_HAND, "oct-hand-step-plain", BENCH_TREE_WHOLE, .weighting = OCT_PLAIN),
     PART(50, BENCH_HAND, "oct-hand-step-adjoint", BENCH_TREE_WHOLE, .adjoint = true),
     SETUP(50, BENCH_HAND, "oct-hand-distances", BENCH_SETUP_DISTANCES, .at_most = 0),
@@ -201,8 +202,6 @@ static void start_row(const BenchJob *job, BenchKernelRow *row)
     snprintf(row->item, sizeof row->item, "%s", job->item);
     snprintf(row->precision, sizeof row->precision, "%s", job->arithmetic);
     snprintf(row->isa, sizeof row->isa, "%s", job->peak->isa);
-    if (kernel->at_most > 0 && job->threads == 1 && job->precision == BENCH_F32)
-        row->at_most = kernel->at_most;
 }
 
 static void find_busy(const BenchTrial *trial, BenchKernelRow *row)
@@ -240,6 +239,18 @@ static void set_bound(const BenchJob *job, BenchKernelRow *row)
     row->bound_ns =
         bench_bound(job->peak, &job->least, precision, row->threads, job->footprint, &limit);
     snprintf(row->bound, sizeof row->bound, "%s", limit);
+}
+
+/* What is wanted of this instruction set. */
+static void set_limit(const BenchJob *job, BenchKernelRow *row)
+{
+    const BenchKernel *kernel = job->kernel;
+    const char *isa = job->peak->isa;
+    if (job->threads != 1 || job->precision != BENCH_F32) return;
+    if (kernel->avx2 > 0 && !strcmp(isa, "avx2"))
+        row->at_most = row->bound_ns / kernel->avx2;
+    else if (kernel->at_most > 0 && (!strcmp(isa, "avx512") || !strcmp(row->precision, "integer")))
+        row->at_most = kernel->at_most;
 }
 
 /* The median over samples of how it compares with its base, timed just before or after. */
@@ -292,6 +303,7 @@ static void report(Run *run, BenchJob *job, const BenchJob *jobs, int count)
     set_times(job, row);
     kind->report(job, row);
     set_bound(job, row);
+    set_limit(job, row);
     run->own_ns[job->kernel - kernels] = job->own_ns;
     for (int k = 0; k < KERNELS && kind->own; k++)
         if (has_base(job->kernel, &kernels[k])) compare_own(job, run->own_ns[k], row);

@@ -22,7 +22,11 @@ void bench_print_isas(FILE *file)
 
 static void print_version(FILE *file, struct argp_state *state)
 {
-    (void)state;
+    SmError error;
+    if (sm_isa_wanted(&error)) {
+        bench_option_fail(state->name, &error);
+        exit(SM_USAGE);
+    }
     fputs("shapebench " SHAPEBENCH_VERSION "\ninstruction sets: ", file);
     bench_print_isas(file);
     fputc('\n', file);

@@ -10,6 +10,7 @@
 #include "../../reference/meshless/engine.h"
 #include "../../reference/meshless/solve/solver.h"
 #include "../engine/boundary.h"
+#include "../isa.h"
 #include "../system/team.h"
 #include "inner.h"
 
@@ -281,6 +282,7 @@ int sb_body_create(const sb_voxels *voxels, const sb_mesh *surface, const sb_bod
     code = sm_check_handle(voxels, SB_IS_VOXELS, error);
     if (!code && surface) code = sm_check_handle(surface, SB_IS_MESH, error);
     if (!code) code = sm_take_params(params, &p, sizeof p, "sb_body_params", error);
+    if (!code && sm_isa_wanted(&why)) code = sm_refuse(error, SB_USAGE, "%s", why.text);
     if (!code) code = check_engine(&p, error);
     if (!code) code = check_choices(&p, error);
     if (!code) code = check_sizes(&p, &voxels->voxels, error);
