@@ -315,7 +315,7 @@ static size_t row_slots(const Lsm *lsm)
 
 static void build_rows(Lsm *lsm)
 {
-    size_t rows = row_slots(lsm) + 2, real_size = sizeof(real);
+    size_t rows = row_slots(lsm) + 1, real_size = sizeof(real);
     size_t bars = (size_t)lsm->lists.bar_count + 1, plates = (size_t)lsm->lists.plate_count + 1;
     lsm->rows = (Rows){
         .p = sm_alloc(rows * ROW_P, real_size),

@@ -48,11 +48,11 @@ enum {
 };
 
 typedef struct {
-    real *p;          /* [slots + 2][ROW_P]          m~ x */
+    real *p;          /* [slots + 1][ROW_P]          m~ x */
     real *bar;        /* [bars][ROW_BAR]             sums of p and of a p; then the adjoint's
                                                      (Q, R z, R y), as the plates are done with it */
     real *plate;      /* [plates][ROW_PLATE]         .. and of b p */
-    real *transform;  /* [slots + 2][ROW_T]          (q_r, R z, R y, R x) */
+    real *transform;  /* [slots + 1][ROW_T]          (q_r, R z, R y, R x) */
     real *plate_down; /* [plates][ROW_PLATE_DOWN]    (Q, R z); running [ROW_PLATE_RUN],
                                                      with R y for the rows made from it */
 } Rows;
@@ -60,8 +60,7 @@ typedef struct {
 /* Damping keeps its products in `transform`, and then (omega, v_r - omega x c_r) in their place; it
  * sums through the same bars and plates. */
 
-/* Row 0 of every array is zero (the absent member), slot s is row s + 1, and row slots + 1 takes
- * what empty lanes write. */
+/* Row 0 of every array is zero (the absent member), slot s is row s + 1. */
 
 typedef struct LsmPass LsmPass; /* what is summed, and what for: sums.h */
 typedef struct LsmSums LsmSums; /* a form of the sums: sums.h */

@@ -23,10 +23,7 @@ void bench_print_isas(FILE *file)
 static void print_version(FILE *file, struct argp_state *state)
 {
     SmError error;
-    if (sm_isa_wanted(&error)) {
-        bench_option_fail(state->name, &error);
-        exit(SM_USAGE);
-    }
+    if (sm_isa_wanted(&error)) bench_usage(state, "%s", error.text);
     fputs("shapebench " SHAPEBENCH_VERSION "\ninstruction sets: ", file);
     bench_print_isas(file);
     fputc('\n', file);

@@ -100,14 +100,13 @@ static void keep_transforms(const Lsm *lsm, long tile, const real *down)
 {
     static const int triple[4] = {0, 1, 3, 2};
     vec field[16];
-    real *row[SM_LANES];
+    real *row[SM_LANES], nobodys[ROW_T];
     for (int i = 0; i < 16; i++)
         field[i] =
             i % 4 < 3 ? lanes_load(down + (3 * triple[i / 4] + i % 4) * SM_LANES) : lanes_set(0);
     for (int lane = 0; lane < SM_LANES; lane++) {
         int slot = lsm->tile_slot[tile * SM_LANES + lane];
-        row[lane] =
-            lsm->rows.transform + (slot < 0 ? lsm->blocks * SM_LANES + 1 : slot + 1) * ROW_T;
+        row[lane] = slot < 0 ? nobodys : lsm->rows.transform + (slot + 1) * (long)ROW_T;
     }
     lanes_to_rows(field, row);
 }

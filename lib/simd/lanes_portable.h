@@ -32,7 +32,7 @@ typedef lane_int native_ivec __attribute__((vector_size(16)));
     LANES_OF(f(LANES_LOW(a), LANES_LOW(b)), f(LANES_HIGH(a), LANES_HIGH(b)))
 #endif
 
-#define LANES_LESS(a, b)  ((native_ivec)((a) < (b)))
+#define LANES_LESS(a, b) ((native_ivec)((a) < (b)))
 
 /* Of lanes with `mask` set all over, and else 0. */
 SM_INLINE vec lanes_select(ivec mask, vec yes, vec no)
