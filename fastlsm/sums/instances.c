@@ -123,15 +123,21 @@ SM_INLINE void solve_of(Lsm *lsm, int layer, int thread, bool plain, int side, S
     const Stage up = plain ? (Stage){12, -1, false} : (Stage){9, 0, false},
                 bar = plain ? (Stage){6, -1, true} : (Stage){12, 6, true},
                 plate = plain ? (Stage){6, -1, true} : (Stage){9, 6, true};
-    long first = lsm->layer_tile[layer];
-    for (long tile = first; tile < lsm->layer_tile[layer + 1]; tile++) {
-        long p = lsm->tile_slot[tile - first];
-        vec row[15], sum[1][12];
-        row_sums(lists->region + p * side, side, g.plate, PLATE, up, row);
-        for (int f = 0; f < 12; f++) /* of (C, Cx, Cy, Cz) */
-            sum[0][f] = row[plain || f < 3 ? f : 3 * (f % 3 + 1) + f / 3 - 1];
-        real *down = g.transform + (p + 1) * TILE_DOWN;
-        lsm_solve(lsm, plain, layer, tile, 1, sum, down, laps);
+    const long first = lsm->layer_tile[layer], end = lsm->layer_tile[layer + 1];
+    int tiles;
+    for (long tile = first; tile < end; tile += tiles) {
+        const int *slot = lsm->tile_slot + (tile - first);
+        vec sum[TILE_GROUP][12];
+        /* neighbours are solved together */
+        for (tiles = 0; tiles < TILE_GROUP && tile + tiles < end; tiles++) {
+            vec row[15];
+            if (slot[tiles] != slot[0] + tiles) break;
+            row_sums(lists->region + (long)slot[tiles] * side, side, g.plate, PLATE, up, row);
+            for (int f = 0; f < 12; f++) /* of (C, Cx, Cy, Cz) */
+                sum[tiles][f] = row[plain || f < 3 ? f : 3 * (f % 3 + 1) + f / 3 - 1];
+        }
+        real *down = g.transform + (slot[0] + 1) * (long)TILE_DOWN;
+        lsm_solve(lsm, plain, layer, tile, tiles, sum, down, laps);
         lsm_solved(plain, laps);
     }
     copy_regions(lsm, &g, plain);

@@ -88,22 +88,6 @@ SM_INLINE vec lanes_sqrt(vec v)
     return (vec)AVX2(sqrt)((native_vec)v);
 }
 
-/* The approximate ones have other bits on every maker's processors. */
-SM_INLINE vec lanes_rough_inverse(vec v)
-{
-    return 1 / v;
-}
-
-SM_INLINE vec lanes_rough_root(vec v)
-{
-    return lanes_sqrt(v);
-}
-
-SM_INLINE vec lanes_inverse(vec v)
-{
-    return 1 / v;
-}
-
 SM_INLINE vec lanes_rounded(vec product)
 {
     __asm__("" : "+x"(product));

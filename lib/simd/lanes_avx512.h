@@ -55,23 +55,6 @@ SM_INLINE vec lanes_sqrt(vec v)
     return (vec)AVX512(sqrt)((native_vec)v);
 }
 
-SM_INLINE vec lanes_rough_inverse(vec v)
-{
-    vec rough = (vec)AVX512(rcp14)((native_vec)v);
-    return SM_REAL_BITS == 32 ? rough : rough + rough * (1 - v * rough);
-}
-
-SM_INLINE vec lanes_rough_root(vec v)
-{
-    return v * (vec)AVX512(rsqrt14)((native_vec)v);
-}
-
-SM_INLINE vec lanes_inverse(vec v)
-{
-    vec rough = lanes_rough_inverse(v);
-    return rough + rough * (1 - v * rough);
-}
-
 SM_INLINE vec lanes_rounded(vec product)
 {
     __asm__("" : "+v"(product));

@@ -109,24 +109,6 @@ SM_INLINE vec lanes_sqrt(vec v)
 #endif
 }
 
-/* 1 / v to a relative error of 1e-4 in single and 1e-8 in double precision, or better. */
-SM_INLINE vec lanes_rough_inverse(vec v)
-{
-    return 1 / v;
-}
-
-/* sqrt(v) to 1e-4; v > 0. */
-SM_INLINE vec lanes_rough_root(vec v)
-{
-    return lanes_sqrt(v);
-}
-
-/* 1 / v to about the last bit. */
-SM_INLINE vec lanes_inverse(vec v)
-{
-    return 1 / v;
-}
-
 /* A product that is rounded before it is used, never fused with a sum: what enters a window leaves
  * it with the same value, and a goal is the same wherever it is computed. */
 SM_INLINE vec lanes_rounded(vec product)

@@ -41,7 +41,7 @@ SM_INLINE vec polar_norm(const vec A[9])
     return even + odd + A[8] * A[8];
 }
 
-/* |A|^2; I, II and J of A / |A|, and about 1 / |A|; the cofactor. */
+/* |A|^2; I, II and J of A / |A|, and 1 / |A|; the cofactor. */
 typedef struct {
     vec square, I, II, J, inverse, C[9];
 } PolarInvariants;
@@ -50,7 +50,7 @@ SM_INLINE void polar_invariants(const vec A[9], PolarInvariants *of)
 {
     vec square = polar_norm(A), C[9];
     polar_cofactor(A, C);
-    vec inverse = lanes_rough_inverse(lanes_rough_root(square)), by = inverse * inverse;
+    vec inverse = 1 / lanes_sqrt(square), by = inverse * inverse;
     vec det = A[0] * C[0] + A[1] * C[1] + A[2] * C[2];
     of->II = polar_norm(C) * by * by;
     lanes_copy(9, C, of->C);
@@ -61,15 +61,15 @@ SM_INLINE void polar_invariants(const vec A[9], PolarInvariants *of)
 }
 
 /* tr U by Halley's iteration from above: (s1+s2+s3)^2 = I + 2 (s1 s2 + ..) <= I + 2 sqrt(3 II),
- * with equality where all stretches agree. Convergence is cubic, so a small change is the last one,
- * and rough reciprocals do: the iteration corrects them. */
+ * with equality where all stretches agree. Convergence is cubic, so a small change is the last one.
+ * Divided is by what every processor rounds alike: approximate reciprocals have other bits on every
+ * maker's, and gain at most 3% of a step. */
 SM_INLINE void polar_trace(int tiles, const PolarInvariants *of, const unsigned *live, vec *l)
 {
     const real enough = SM_REAL_BITS == 32 ? (real)2e-3 : (real)1e-6;
     vec I2[POLAR_TILES], constant[POLAR_TILES], J8[POLAR_TILES], square[POLAR_TILES],
         f[POLAR_TILES], slope[POLAR_TILES], change[POLAR_TILES], trace[POLAR_TILES];
-    POLAR_EACH trace[t] =
-        lanes_rough_root(of[t].I + 2 * lanes_rough_root(3 * of[t].II + SM_EPSILON));
+    POLAR_EACH trace[t] = lanes_sqrt(of[t].I + 2 * lanes_sqrt(3 * of[t].II + SM_EPSILON));
     POLAR_EACH I2[t] = 2 * of[t].I;
     POLAR_EACH constant[t] = of[t].I * of[t].I - 4 * of[t].II;
     POLAR_EACH J8[t] = 8 * of[t].J;
@@ -79,8 +79,7 @@ SM_INLINE void polar_trace(int tiles, const PolarInvariants *of, const unsigned 
         POLAR_EACH f[t] = (square[t] * (square[t] - I2[t]) + constant[t]) - J8[t] * trace[t];
         POLAR_EACH slope[t] = 2 * trace[t] * (2 * square[t] - I2[t]) - J8[t];
         POLAR_EACH change[t] = slope[t] * slope[t] - f[t] * (6 * square[t] - I2[t]);
-        POLAR_EACH change[t] =
-            f[t] * slope[t] * lanes_rough_inverse(lanes_max(change[t], lanes_set((real)1e-12)));
+        POLAR_EACH change[t] = f[t] * slope[t] / lanes_max(change[t], lanes_set((real)1e-12));
         POLAR_EACH trace[t] -= change[t];
         POLAR_EACH more |= lanes_below(enough * trace[t], lanes_abs(change[t])) & live[t];
         if (!more) break;
@@ -145,7 +144,7 @@ static __attribute__((noinline, unused)) void polar_polish(const vec *A, unsigne
         K[i] = (real)-0.5 * (M[i] + M[i % 3 * 3 + i / 3]) +
                (i % 4 ? lanes_set(0) : M[0] + M[4] + M[8]);
     polar_cofactor(K, C);
-    vec over = lanes_inverse(K[0] * C[0] + K[1] * C[1] + K[2] * C[2]);
+    vec over = 1 / (K[0] * C[0] + K[1] * C[1] + K[2] * C[2]);
     for (int i = 0; i < 3; i++)
         skew[i] = over * (M[(i + 2) % 3 * 3 + (i + 1) % 3] - M[(i + 1) % 3 * 3 + (i + 2) % 3]);
     for (int i = 0; i < 3; i++) turn[i] = C[i] * skew[0] + C[3 + i] * skew[1] + C[6 + i] * skew[2];
@@ -167,8 +166,8 @@ static __attribute__((noinline, unused)) void polar_polish(const vec *A, unsigne
 SM_INLINE unsigned polar_rotation(const vec A[9], const PolarInvariants *of, vec l, unsigned live,
                                   real polish, vec R[9])
 {
-    vec D[9], over_l = lanes_inverse(l), i2 = (real)0.5 * (l * l - of->I), below = l * i2 - of->J,
-              over = lanes_inverse(below) * of->inverse;
+    vec D[9], over_l = 1 / l, i2 = (real)0.5 * (l * l - of->I), below = l * i2 - of->J,
+              over = of->inverse / below;
     vec second = lanes_keep(live, (i2 - of->J * over_l) * over),
         first = lanes_keep(live, l * over * of->inverse);
     over_l = lanes_keep(live, over_l * of->inverse);

@@ -149,23 +149,15 @@ TEST(lanes_are_compared)
     check(lanes_abs(lanes_set(-(real)0)), lanes_set(0));
 }
 
-/* Relative errors as lanes.h promises them, over the magnitudes of ten decades. */
-TEST(roots_and_inverses_are_as_exact_as_promised)
+/* As the standard has them: over the magnitudes of ten decades, and of special values. */
+TEST(roots_are_rounded_to_the_last_bit)
 {
     unsigned seed = 3;
-    const double rough = SM_REAL_BITS == 32 ? 1e-4 : 1e-8, last = 2 * (double)SM_EPSILON;
     for (int trial = 0; trial < 10 * TRIALS; trial++) {
         vec v;
         for (int i = 0; i < SM_LANES; i++) v[i] = (real)pow(10, random_between(&seed, -5, 5));
-        vec root = lanes_sqrt(v), rough_root = lanes_rough_root(v);
-        vec inverse = lanes_inverse(v), rough_inverse = lanes_rough_inverse(-v);
-        for (int i = 0; i < SM_LANES; i++) {
-            double x = (double)v[i], s = sqrt(x);
-            assert_true(root[i] == (real)s);
-            assert_true(fabs((double)rough_root[i] - s) <= 1e-4 * s);
-            assert_true(fabs((double)inverse[i] * x - 1) <= last);
-            assert_true(fabs(-(double)rough_inverse[i] * x - 1) <= rough);
-        }
+        vec root = lanes_sqrt(v);
+        for (int i = 0; i < SM_LANES; i++) assert_true(root[i] == (real)sqrt((double)v[i]));
     }
     for (int trial = 0; trial < TRIALS; trial++) {
         vec v = special_vec(&seed), root = lanes_sqrt(v);
