@@ -7,14 +7,16 @@
 static void print_heading(const BenchReport *report, bool elastic)
 {
     char where[BENCH_WHERE_TEXT];
+    BenchMachine machine = *report->machine;
+    if (elastic) machine.threads = 1; /* whatever others have */
+    bench_machine_where(&machine, where);
     if (elastic)
         fprintf(report->file,
-                "Meshless bodies: times of one frame, median, on %s, one thread:\n"
+                "Meshless bodies: times of one frame, median, on %s:\n"
                 "the modes' motion, and the points that it carries (skin).\n\n",
-                report->machine->cpu);
+                where);
     else
-        fprintf(report->file, "Times of one step, median, stages in percent, on %s.\n\n",
-                bench_machine_where(report->machine, where));
+        fprintf(report->file, "Times of one step, median, stages in percent, on %s.\n\n", where);
 }
 
 static BenchTableKind table_of(const BenchReport *report, bool elastic)

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "../../../lib/vector.h"
+#include "frame_sums.h"
 #include "rotation.h"
 
 enum { MOST_CORRECTIONS = 8 };
@@ -28,9 +29,8 @@ void ref_motion_free(RefMotion *motion)
 
 static double dot(int count, const double *a, const double *b)
 {
-    double sum = 0;
-#pragma omp simd reduction(+ : sum)
-    for (int k = 0; k < count; k++) sum += a[k] * b[k];
+    double sum;
+    ref_frame_sums.apply(count, 1, a, b, &sum);
     return sum;
 }
 
@@ -177,8 +177,7 @@ int ref_motion_hold_rows(const double *rows, RefMotion *motion)
 
 static void drift_of(const RefMotion *motion, double t[3])
 {
-    for (int d = 0; d < 3; d++)
-        t[d] = dot(motion->modes, motion->drift + d * motion->modes, motion->z);
+    ref_frame_sums.apply(motion->modes, 3, motion->drift, motion->z, t);
 }
 
 /* A force on all nodes, as it acts on the modes: turned back at each node, but for what displaces
@@ -209,26 +208,24 @@ static void pull_node(const RefMotion *motion, long n, const double force[3], Pu
         f[d] = R[d] * F[0] + R[3 + d] * F[1] + R[6 + d] * F[2];
         pull->turned[d] += f[d];
     }
-    for (int k = 0; k < modes; k++)
-        pull->modal[k] += f[0] * row[k] + f[1] * row[modes + k] + f[2] * row[2 * modes + k];
+    ref_frame_sums.add(modes, f, row, pull->modal);
 }
 
 static void pull_drift(const RefMotion *motion, const Pull *pull)
 {
-    for (int d = 0; d < 3; d++)
-        for (int k = 0; k < motion->modes; k++)
-            pull->modal[k] +=
-                (pull->all[d] - pull->turned[d]) * motion->drift[d * motion->modes + k];
+    double rest[3];
+    for (int d = 0; d < 3; d++) rest[d] = pull->all[d] - pull->turned[d];
+    ref_frame_sums.add(motion->modes, rest, motion->drift, pull->modal);
 }
 
 /* Rotation and local displacement of one node from z. */
 static void node_at(const RefMotion *motion, long n, double w[3], double local[3])
 {
     const double *row = motion->row + (size_t)n * 6 * (size_t)motion->modes;
-    for (int d = 0; d < 3; d++) {
-        local[d] = dot(motion->modes, row + d * motion->modes, motion->z);
-        w[d] = dot(motion->modes, row + (3 + d) * motion->modes, motion->z);
-    }
+    double sum[6];
+    ref_frame_sums.apply(motion->modes, 6, row, motion->z, sum);
+    memcpy(local, sum, 3 * sizeof *sum);
+    memcpy(w, sum + 3, 3 * sizeof *sum);
 }
 
 /* What a node of this rotation and local displacement moves beside the drift. */

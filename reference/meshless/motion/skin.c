@@ -4,7 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BLOCK = 64, LANES = 16 };
+#include "frame_sums.h"
+
+enum { BLOCK = 64, LANES = REF_SKIN_LANES };
 
 typedef struct {
     const RefBody *body;
@@ -149,43 +151,10 @@ void ref_skin_free(RefSkin *skin)
     *skin = (RefSkin){0};
 }
 
-/* One vector of points; their sums stay in registers. */
-static void place_lanes(const RefSkinBlock *block, const float *weight, const float (*moved)[3],
-                        float sum[3][LANES])
-{
-    float x[LANES] = {0}, y[LANES] = {0}, z[LANES] = {0};
-    for (int n = 0; n < block->nodes; n++)
-        for (int p = 0; p < LANES; p++) {
-            x[p] += weight[n * LANES + p] * moved[n][0];
-            y[p] += weight[n * LANES + p] * moved[n][1];
-            z[p] += weight[n * LANES + p] * moved[n][2];
-        }
-    memcpy(sum[0], x, sizeof x);
-    memcpy(sum[1], y, sizeof y);
-    memcpy(sum[2], z, sizeof z);
-}
-
-static void place_block(const RefSkin *skin, const RefSkinBlock *block, const double (*moved)[3],
-                        float (*near)[3], double (*position)[3])
-{
-    const float *weight = skin->weight + block->weight;
-    for (int n = 0; n < block->nodes; n++)
-        for (int d = 0; d < 3; d++) near[n][d] = (float)moved[skin->node[block->node + n]][d];
-    for (int begin = 0; begin < block->points; begin += LANES, weight += LANES * block->nodes) {
-        float sum[3][LANES];
-        int end = block->points - begin < LANES ? block->points - begin : LANES;
-        place_lanes(block, weight, (const float(*)[3])near, sum);
-        for (int p = 0; p < end; p++)
-            for (int d = 0; d < 3; d++)
-                position[block->first + begin + p][d] =
-                    skin->rest[block->first + begin + p][d] + (double)sum[d][p];
-    }
-}
-
 void ref_skin_place(const RefSkin *skin, const double (*moved)[3], double (*position)[3])
 {
     for (long b = 0; b < skin->blocks; b++)
-        place_block(skin, skin->block + b, moved, skin->near, position);
+        ref_frame_sums.place(skin, skin->block + b, moved, position);
 }
 
 void ref_skin_push(const RefSkin *skin, long place, const double push[3], double (*nodes)[3])

@@ -8,6 +8,8 @@
 
 #include "../body/body.h"
 
+enum { REF_SKIN_LANES = 16 }; /* points that are placed at once */
+
 typedef struct {
     int points, room; /* room: points rounded up to whole vectors */
     int nodes;
@@ -21,7 +23,7 @@ typedef struct {
     long blocks;
     RefSkinBlock *block;
     int *node;
-    float *weight;    /* block by block, [room / 16][nodes][16] */
+    float *weight;    /* block by block, [room / REF_SKIN_LANES][nodes][REF_SKIN_LANES] */
     float (*near)[3]; /* scratch: displacements of a block's nodes */
 } RefSkin;
 

@@ -1,0 +1,62 @@
+/* frame_sums.c - compiled as the kernels are, for each instruction set: compilers make vectors of
+ * these loops. */
+#include "frame_sums.h"
+
+#include <string.h>
+
+#include "../../../lib/simd/real.h"
+
+enum { LANES = REF_SKIN_LANES };
+
+static void apply(int modes, int rows, const double *row, const double *z, double *sums)
+{
+    for (int r = 0; r < rows; r++, row += modes) {
+        double sum = 0;
+#pragma omp simd reduction(+ : sum)
+        for (int k = 0; k < modes; k++) sum += row[k] * z[k];
+        sums[r] = sum;
+    }
+}
+
+static void add(int modes, const double f[3], const double *row, double *modal)
+{
+    const double x = f[0], y = f[1], z = f[2];
+#pragma omp simd
+    for (int k = 0; k < modes; k++)
+        modal[k] += x * row[k] + y * row[modes + k] + z * row[2 * modes + k];
+}
+
+/* One vector of points; their sums stay in registers. */
+static void place_lanes(int nodes, const float *weight, const float (*moved)[3],
+                        float sum[3][LANES])
+{
+    float x[LANES] = {0}, y[LANES] = {0}, z[LANES] = {0};
+    for (int n = 0; n < nodes; n++)
+        for (int p = 0; p < LANES; p++) {
+            x[p] += weight[n * LANES + p] * moved[n][0];
+            y[p] += weight[n * LANES + p] * moved[n][1];
+            z[p] += weight[n * LANES + p] * moved[n][2];
+        }
+    memcpy(sum[0], x, sizeof x);
+    memcpy(sum[1], y, sizeof y);
+    memcpy(sum[2], z, sizeof z);
+}
+
+static void place(const RefSkin *skin, const RefSkinBlock *block, const double (*moved)[3],
+                  double (*position)[3])
+{
+    const float *weight = skin->weight + block->weight;
+    for (int n = 0; n < block->nodes; n++)
+        for (int d = 0; d < 3; d++) skin->near[n][d] = (float)moved[skin->node[block->node + n]][d];
+    for (int begin = 0; begin < block->points; begin += LANES, weight += LANES * block->nodes) {
+        float sum[3][LANES];
+        int end = block->points - begin < LANES ? block->points - begin : LANES;
+        place_lanes(block->nodes, weight, (const float(*)[3])skin->near, sum);
+        for (int p = 0; p < end; p++)
+            for (int d = 0; d < 3; d++)
+                position[block->first + begin + p][d] =
+                    skin->rest[block->first + begin + p][d] + (double)sum[d][p];
+    }
+}
+
+const RefFrameSums SM_ISA_NAME(ref_frame_sums) = {apply, add, place};

@@ -1,0 +1,22 @@
+/* frame_sums.h - the sums that a frame consists of (meshless section 5.3), of the instruction set
+ * in use (lib/isa.h): they stream the modes' rows and the skin's weights, which are all that a
+ * frame reads. */
+#ifndef REF_FRAME_SUMS_H
+#define REF_FRAME_SUMS_H
+
+#include "skin.h"
+
+typedef struct {
+    /* sum[r] = row[r] . z, of `rows` rows of `modes`. */
+    void (*apply)(int modes, int rows, const double *row, const double *z, double *sum);
+
+    /* modal += f[0] row[0] + f[1] row[1] + f[2] row[2], rows of `modes`. */
+    void (*add)(int modes, const double f[3], const double *row, double *modal);
+
+    /* ref_skin_place() of one block. */
+    void (*place)(const RefSkin *skin, const RefSkinBlock *block, const double (*moved)[3],
+                  double (*position)[3]);
+} RefFrameSums;
+extern RefFrameSums ref_frame_sums;
+
+#endif

@@ -1,0 +1,33 @@
+/* Sums over modes beside themselves one after the other; test_skin.c has the points'. */
+#include "frame_sums.h"
+
+#include "../../../lib/test_frame.h"
+#include "../../../lib/test_random.h"
+
+enum { MOST = 70, TRIALS = 40 };
+
+TEST(rows_are_applied_and_added)
+{
+    unsigned seed = 1;
+    static double row[6][MOST], z[MOST], modal[MOST];
+    for (int trial = 0; trial < TRIALS; trial++) {
+        int modes = 1 + random_int(&seed, MOST), rows = random_int(&seed, 7);
+        double *at = row[0], f[3], sum[7], wanted[MOST];
+        for (int i = 0; i < 6 * modes; i++) at[i] = random_between(&seed, -1, 1);
+        for (int k = 0; k < modes; k++) z[k] = random_between(&seed, -1, 1);
+        for (int k = 0; k < modes; k++) modal[k] = random_between(&seed, -1, 1);
+        for (int d = 0; d < 3; d++) f[d] = random_between(&seed, -1, 1);
+        sum[rows] = 7;
+        ref_frame_sums.apply(modes, rows, at, z, sum);
+        for (int r = 0; r < rows; r++) {
+            double one = 0;
+            for (int k = 0; k < modes; k++) one += at[r * modes + k] * z[k];
+            assert_true(fabs(sum[r] - one) < 1e-13);
+        }
+        assert_true(sum[rows] == 7); /* no more than was asked for */
+        for (int k = 0; k < modes; k++)
+            wanted[k] = modal[k] + f[0] * at[k] + f[1] * at[modes + k] + f[2] * at[2 * modes + k];
+        ref_frame_sums.add(modes, f, at, modal);
+        for (int k = 0; k < modes; k++) assert_true(fabs(modal[k] - wanted[k]) < 1e-14);
+    }
+}
