@@ -18,8 +18,8 @@ SM_INLINE bool match_is_centred(const RegionConst *k)
  * lattice centre, A[3 i + d] along axis d of component i. */
 enum { MOMENT = 3 };
 
-/* Values that a region brings down, [values][SM_LANES]; the most tiles that are solved at once. */
-enum { TILE_DOWN = 12 * SM_LANES, TILE_GROUP = 4 };
+/* Values that a region brings down, [values][SM_LANES]. */
+enum { TILE_DOWN = 12 * SM_LANES };
 
 /* Number f of the values in the order in which the stages of the sums make and use them, (P, Pz,
  * Px, Py) and (q, Rz, Rx, Ry), among a region's sums (C, A) and its transform (q, R). */
@@ -46,8 +46,6 @@ SM_INLINE void match_centre(const vec c[3], const vec R[9], const RegionConst *k
     for (int i = 0; i < 3; i++)
         for (int d = 0; d < 3; d++) q[i] -= R[i * 3 + d] * k->offset[d];
 }
-
-_Static_assert((int)TILE_GROUP <= (int)POLAR_TILES, "a group of tiles is matched at once");
 
 /* c_r and A_r of a tile, in the place of its sums. */
 SM_INLINE void moments(Lsm *lsm, long tile, vec S[12])
@@ -84,9 +82,9 @@ static __attribute__((noinline, unused)) void match_tile_jacobi(Lsm *lsm, int la
 SM_INLINE void match_tiles(Lsm *lsm, int layer, long tile, int tiles, vec (*S)[12], real *down,
                            SmLaps *laps)
 {
-    unsigned live[TILE_GROUP];
-    PolarInvariants of[TILE_GROUP];
-    vec trace[TILE_GROUP];
+    unsigned live[POLAR_TILES];
+    PolarInvariants of[POLAR_TILES];
+    vec trace[POLAR_TILES];
     sm_lap(laps, SM_FAST_SUM);
     if (lsm->params.polar == SM_POLAR_JACOBI) {
         for (int t = 0; t < tiles; t++) {

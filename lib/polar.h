@@ -34,6 +34,9 @@ typedef void (*SmPolarBatch64)(long count, const double *A, const double *last, 
 extern SmPolarBatch32 sm_polar_batch_f32;
 extern SmPolarBatch64 sm_polar_batch_f64;
 
+/* Tiles of SM_LANES matrices that the kernel takes together, at most. */
+enum { POLAR_TILES = 4 };
+
 /* What a matrix takes by the batch: polar_lanes.h: scale 8 maxima and 9 products; two cofactor
  * matrices of 9 x 3; |A|^2, |cof|^2 17 each, det 5; the start 8; Newton 14 a step, 3 steps; D 9 x
  * 2; R 9 x 3; scalars 12. */

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/polar.h"
 #include "../lib/system/team.h"
 #include "body_arrays.h"
 #include "dynamic_body.h"
@@ -41,7 +42,7 @@ static void fill_slots(const OctTree *tree, const OctRegions *regions, const dou
 
 long oct_share_start(long block, long blocks)
 {
-    long start = (block + OCT_TOGETHER - 1) / OCT_TOGETHER * OCT_TOGETHER;
+    long start = (block + POLAR_TILES - 1) / POLAR_TILES * POLAR_TILES;
     return start < blocks ? start : blocks;
 }
 

@@ -21,8 +21,8 @@ long oct_bytes(const Oct *oct);
 /* Sets the rest shapes of a plastic body's regions; `S` is [leaves][9]. */
 void oct_shape(Oct *oct, long body, const double (*S)[9]);
 
-/* Where the share of a thread begins that is to begin at `block`, of `blocks`: no group of blocks
- * that are matched together is cut. */
+/* Where the share of a thread begins that is to begin at `block`, of `blocks`: no group of
+ * POLAR_TILES blocks, which are matched together, is cut. */
 long oct_share_start(long block, long blocks);
 
 #endif

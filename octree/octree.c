@@ -161,15 +161,13 @@ static __attribute__((noinline)) void match_jacobi(OctTask *task, int blocks, co
     }
 }
 
-_Static_assert((int)OCT_TOGETHER <= (int)POLAR_TILES, "polar_traces() takes no more");
-
 /* A group of blocks: the iterations of their rotations alternate, and need not wait for each other.
  */
 static void match_group(OctTask *task, int blocks, const long *block)
 {
-    vec c[OCT_TOGETHER][3], A[OCT_TOGETHER][9], trace[OCT_TOGETHER];
-    PolarInvariants of[OCT_TOGETHER];
-    unsigned live[OCT_TOGETHER];
+    vec c[POLAR_TILES][3], A[POLAR_TILES][9], trace[POLAR_TILES];
+    PolarInvariants of[POLAR_TILES];
+    unsigned live[POLAR_TILES];
     for (int t = 0; t < blocks; t++) {
         block_moments(task, block[t], c[t], A[t]);
         polar_invariants(A[t], &of[t]);
@@ -189,7 +187,7 @@ static void match_group(OctTask *task, int blocks, const long *block)
 static void match(OctTask *task, long first, long last)
 {
     while (first < last) {
-        long block[OCT_TOGETHER], end = first + OCT_TOGETHER < last ? first + OCT_TOGETHER : last;
+        long block[POLAR_TILES], end = first + POLAR_TILES < last ? first + POLAR_TILES : last;
         int blocks = 0;
         for (; first < end; first++)
             if (task->oct->live[first]) block[blocks++] = first;

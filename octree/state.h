@@ -60,9 +60,6 @@ typedef struct {
  * 0. Row numbers are those of sum_lists.h. */
 enum { OCT_ROW = 16, OCT_ROW_VELOCITY = 8 };
 
-/* Blocks in a row, from a multiple of this on, whose regions are matched together. */
-enum { OCT_TOGETHER = 4 };
-
 /* Sums of one body while it is stepped. */
 typedef struct {
     real *moment;    /* [rows][OCT_ROW] */

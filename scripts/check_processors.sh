@@ -63,7 +63,7 @@ portable() {
 
 wasm() {
     local source bits failed=0
-    for source in "$root"/{lib/simd,fastlsm,fastlsm/sums,octree}/[!t]*.c; do
+    for source in "$root"/{lib/simd,fastlsm,fastlsm/sums,octree,octree/search,octree/surface,lib/voxel}/[!t]*.c; do
         for bits in 32 64; do
             clang --target=wasm32-wasi -msimd128 -O2 -c -o /dev/null -std=gnu11 -Wall -Wextra -Werror \
                 -Wno-unknown-pragmas -Wno-unused-variable -Wno-pass-failed -fno-math-errno -DSM_REAL_BITS=$bits -DSM_ISA_NATIVE \

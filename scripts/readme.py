@@ -23,7 +23,7 @@ def main(words):
 
     def measured(table):
         nonlocal stays
-        mark, command, before, end = table.groups()
+        mark, command, _, end = table.groups()
         if words and not any(word in command.split() for word in words):
             return table[0]
         print(f"readme.py: {command}", file=sys.stderr)

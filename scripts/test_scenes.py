@@ -10,7 +10,7 @@ run` holds the last state to brute force. What the program refuses, by one line 
 scene fails that is INVALID, ends otherwise, or takes longer than 300 s. The scene file that failed and its mesh are
 kept in FOLDER, with all settings left out that it fails without, and the command that runs it is printed.
 
-Scene n of a seed is always the same. Default: the first 60 scenes of seed 1, of at most 3000 particles a body, and a
+Scene n of a seed is always the same. Default: the first 100 scenes of seed 1, of at most 3000 particles a body, and a
 new folder; --seconds 7200 --seed 2 goes on for two hours.
 Exit codes: 0 none failed, 1 some did, 2 usage."""
 import argparse
@@ -390,7 +390,7 @@ def keep(program, path, settings, options, wrong, folder):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program")
-    parser.add_argument("--scenes", type=int, default=60)
+    parser.add_argument("--scenes", type=int, default=100)
     parser.add_argument("--seconds", type=float, help="instead of --scenes: until then")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--most", type=int, default=3000, help="particles of a body")

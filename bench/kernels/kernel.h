@@ -52,7 +52,7 @@ typedef struct {
     int w, part;    /* half width of regions; which of the kind's parts */
     double at_most; /* ns an item wanted on one core in single precision, of integers or by AVX-512;
                        0: no limit */
-    double avx2;    /* the share of the floor that is wanted by AVX2; 0: no limit */
+    double avx2_share; /* the share of the floor that is wanted by AVX2; 0: no limit */
     SmSummation summation;
     SmPolarMethod polar;
     OctWeighting weighting;

@@ -27,7 +27,7 @@
     }
 #define SCENE(label, number, ns, share)                                                            \
     {                                                                                              \
-        label, "cases", &bench_scene_kernels, number, .at_most = (ns), .avx2 = (share)             \
+        label, "cases", &bench_scene_kernels, number, .at_most = (ns), .avx2_share = (share)       \
     }
 #define PART(number, of, label, which, ...)                                                        \
     {                                                                                              \
@@ -73,7 +73,8 @@ static const BenchKernel kernels[] = {
     SUMS(3),
     SUMS(5),
     SUMS(8),
-    {"polar-fast", "polar", &bench_polar_kernels, 10, .part = BENCH_POLAR_BATCH, .avx2 = 0.35},
+    {"polar-fast", "polar", &bench_polar_kernels, 10, .part = BENCH_POLAR_BATCH,
+     .avx2_share = 0.35},
     {"polar-jacobi-cold", "polar", &bench_polar_kernels, 10, .part = BENCH_POLAR_COLD},
     {"polar-jacobi-warm", "polar", &bench_polar_kernels, 10, .part = BENCH_POLAR_WARM},
     {"polar-robust", "polar", &bench_polar_kernels, 10, .part = BENCH_POLAR_ROBUST},
@@ -82,15 +83,16 @@ static const BenchKernel kernels[] = {
     {"voxeliser", "voxeliser", &bench_surface_kernels, 12, .part = BENCH_VOXELISE},
     {"embedding", "embedding", &bench_surface_kernels, 12, .part = BENCH_EMBED},
     {"octree-surface", "embedding", &bench_surface_kernels, 12, .part = BENCH_CARRY},
-    STEP("cube32-w1", "cases", 20, 32, 1, .at_most = 8, .avx2 = 0.35),
+    STEP("cube32-w1", "cases", 20, 32, 1, .at_most = 8, .avx2_share = 0.35),
     STEP("cube64-w1", "cases", 21, 64, 1, .at_most = 8),
     STEP("cube64-w1-2threads", "cases", 21, 64, 1, .threads = 2, .base = "cube64-w1",
          .wanted = 1.85),
     STEP("cube64-w1-double", "cases", 21, 64, 1, .doubled = true, .base = "cube64-w1",
          .wanted = 2.2),
-    STEP("cube32-w5", "cases", 22, 32, 5, .at_most = 12, .avx2 = 0.28),
+    STEP("cube32-w5", "cases", 22, 32, 5, .at_most = 12, .avx2_share = 0.28),
     STEP("cube128-w2", "cases", 23, 128, 2, .at_most = 13),
-    STEP("cube64-w1-damping", "cases", 24, 64, 1, .damping = 0.1, .at_most = 15, .avx2 = 0.28),
+    STEP("cube64-w1-damping", "cases", 24, 64, 1, .damping = 0.1, .at_most = 15,
+         .avx2_share = 0.28),
     STEP("cube64-w1-jacobi", "cases", 25, 64, 1, .polar = SM_POLAR_JACOBI),
     SCENE("statue-solid", 30, 30, 0.14),
     SCENE("statue-shell", 31, 60, 0),
@@ -108,7 +110,7 @@ static const BenchKernel kernels[] = {
     CUBE("setup-256", 44, 256, .at_most = 350, .large = true),
     CUBE("setup-464", 45, 464, .huge = true), /* 10^8 particles */
     PARTS(50, BENCH_HAND, "oct-hand"),
-    PART(50, BENCH_HAND, "oct-hand-step", BENCH_TREE_WHOLE, .at_most = 60e3, .avx2 = 0.20,
+    PART(50, BENCH_HAND, "oct-hand-step", BENCH_TREE_WHOLE, .at_most = 60e3, .avx2_share = 0.20,
          .paper = "4.5 ms"),
     PART(50, BENCH_HAND, "oct-hand-step-plain", BENCH_TREE_WHOLE, .weighting = OCT_PLAIN),
     PART(50, BENCH_HAND, "oct-hand-step-adjoint", BENCH_TREE_WHOLE, .adjoint = true),
@@ -247,8 +249,8 @@ static void set_limit(const BenchJob *job, BenchKernelRow *row)
     const BenchKernel *kernel = job->kernel;
     const char *isa = job->peak->isa;
     if (job->threads != 1 || job->precision != BENCH_F32) return;
-    if (kernel->avx2 > 0 && !strcmp(isa, "avx2"))
-        row->at_most = row->bound_ns / kernel->avx2;
+    if (kernel->avx2_share > 0 && !strcmp(isa, "avx2"))
+        row->at_most = row->bound_ns / kernel->avx2_share;
     else if (kernel->at_most > 0 && (!strcmp(isa, "avx512") || !strcmp(row->precision, "integer")))
         row->at_most = kernel->at_most;
 }

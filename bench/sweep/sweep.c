@@ -32,9 +32,9 @@ static const BenchField plan_fields[] = {
     {FIELD(TEXT, width),
      MEANS(NULL, "what an octree's w counts: \"edges\" of each node's own cell, or finest "
                  "\"cells\"")},
-    {FIELD(TEXT, build), MEANS(NULL, "version, commit, instruction set, compiler, flags; where "
-                                     "sources were changed after the commit, "
-                                     "the program's hash")},
+    {FIELD(TEXT, build),
+     MEANS(NULL, "version, commit, instruction set, compiler, flags; where sources were changed "
+                 "after the commit, the program's hash")},
     {FIELD(HASH, scene_hash), MEANS(NULL, "FNV-1a of the scene's settings")},
     {FIELD(HASH, mesh_hash), MEANS(NULL, "FNV-1a of the mesh's coordinates and indices")},
     {FIELD(INT, repeats), MEANS(NULL, "samples of every time")},

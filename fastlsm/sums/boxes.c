@@ -394,7 +394,7 @@ SM_INLINE void stage_y_up(const Around *in, long column, int w, bool plain, bool
 SM_INLINE void solve_group(Lsm *lsm, const Around *in, const BlockRun *run, int i, int blocks,
                            int layer, int w, bool plain, bool moving, real *row, SmLaps *laps)
 {
-    vec sums[TILE_GROUP][12];
+    vec sums[POLAR_TILES][12];
     for (int k = 0; k < blocks; k++) stage_y_up(in, run->column + i + k, w, plain, moving, sums[k]);
     long block = run->first + i;
     real *down = row + (run->column + i) * (long)BLOCK;
@@ -409,7 +409,7 @@ SM_INLINE void solve_group(Lsm *lsm, const Around *in, const BlockRun *run, int 
 SM_INLINE void run_solve(Lsm *lsm, const Around *in, const BlockRun *run, int layer, int w,
                          bool plain, bool moving, real *row, SmLaps *laps)
 {
-    int most = plain ? 1 : TILE_GROUP; /* matching alone gains from several at once */
+    int most = plain ? 1 : POLAR_TILES; /* matching alone gains from several at once */
     for (int i = 0, blocks; i < run->count; i += blocks) {
         int left = run->count - i;
         blocks = left < most ? left : most;
@@ -649,10 +649,10 @@ SM_INLINE void plane_end(Lsm *lsm, int plane, int thread, int w, bool plain, SmL
     Downs downs = downs_around(lsm, plane, w);
     for (int r = box->plane_run[plane]; r < box->plane_run[plane + 1]; r++) {
         const BlockRun *run = &box->run[r];
-        for (int i = 0; i < run->count; i += TILE_GROUP) {
-            vec sum[TILE_GROUP][6];
+        for (int i = 0; i < run->count; i += POLAR_TILES) {
+            vec sum[POLAR_TILES][6];
             long block = run->first + i;
-            int blocks = run->count - i < TILE_GROUP ? run->count - i : TILE_GROUP;
+            int blocks = run->count - i < POLAR_TILES ? run->count - i : POLAR_TILES;
             for (int k = 0; k < blocks; k++) {
                 if (!plain && box->streams) prefetch_ahead(lsm, lsm->v, block + k);
                 vec here[6]; /* in registers, which `sum` cannot be */

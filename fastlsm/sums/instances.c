@@ -127,9 +127,9 @@ SM_INLINE void solve_of(Lsm *lsm, int layer, int thread, bool plain, int side, S
     int tiles;
     for (long tile = first; tile < end; tile += tiles) {
         const int *slot = lsm->tile_slot + (tile - first);
-        vec sum[TILE_GROUP][12];
+        vec sum[POLAR_TILES][12];
         /* neighbours are solved together */
-        for (tiles = 0; tiles < TILE_GROUP && tile + tiles < end; tiles++) {
+        for (tiles = 0; tiles < POLAR_TILES && tile + tiles < end; tiles++) {
             vec row[15];
             if (slot[tiles] != slot[0] + tiles) break;
             row_sums(lists->region + (long)slot[tiles] * side, side, g.plate, PLATE, up, row);

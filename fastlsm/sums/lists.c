@@ -159,12 +159,12 @@ void lsm_lists_solve(Lsm *lsm, int layer, int thread, SmLaps *laps)
     (void)thread;
     const LsmListKernels *lists = lsm->sums->lists;
     const LsmPass *pass = lsm->pass;
-    vec sum[TILE_GROUP][12];
-    real down[TILE_GROUP * TILE_DOWN] __attribute__((aligned(64)));
+    vec sum[POLAR_TILES][12];
+    real down[POLAR_TILES * TILE_DOWN] __attribute__((aligned(64)));
     if (lists->regions) lists->regions(lsm, layer, pass->plain);
     long tile = lsm->layer_tile[layer], end = lsm->layer_tile[layer + 1];
-    for (; tile < end; tile += TILE_GROUP) {
-        int tiles = end - tile < TILE_GROUP ? (int)(end - tile) : TILE_GROUP;
+    for (; tile < end; tile += POLAR_TILES) {
+        int tiles = end - tile < POLAR_TILES ? (int)(end - tile) : POLAR_TILES;
         for (int t = 0; t < tiles; t++) lists->tile(lsm, tile + t, pass->plain, sum[t]);
         lsm_solve(lsm, pass->plain, layer, tile, tiles, sum, down, laps);
         for (int t = 0; t < tiles; t++) lsm_lists_keep_down(lsm, tile + t, down + t * TILE_DOWN);

@@ -37,10 +37,10 @@ struct LsmPass {
     bool plain;    /* sums damping's twelve products and brings six values down, without moments */
     SmStage stage; /* whose time the sums are */
 
-    /* What comes of the sums of `tiles` tiles of regions from number `tile` on, TILE_GROUP at most:
-     * `sum` are (C, A) of match.h, or damping's four triples; `down` receives, TILE_DOWN values a
-     * tile, (q, Rz, Rx, Ry), or damping's two triples, all zero in lanes without a region. NULL:
-     * what match.h or damping.h does with them. */
+    /* What comes of the sums of `tiles` tiles of regions from number `tile` on, POLAR_TILES at
+     * most: `sum` are (C, A) of match.h, or damping's four triples; `down` receives, TILE_DOWN
+     * values a tile, (q, Rz, Rx, Ry), or damping's two triples, all zero in lanes without a region.
+     * NULL: what match.h or damping.h does with them. */
     void (*solve)(Lsm *lsm, int layer, long tile, int tiles, vec (*sum)[12], real *down,
                   SmLaps *laps);
 
@@ -92,7 +92,7 @@ SM_INLINE void lsm_solve(Lsm *lsm, bool plain, int layer, long tile, int tiles, 
                          real *down, SmLaps *laps)
 {
     if (lsm->pass->solve) {
-        vec copy[TILE_GROUP][12];
+        vec copy[POLAR_TILES][12];
         for (int t = 0; t < tiles; t++) lanes_copy(12, sum[t], copy[t]);
         lsm->pass->solve(lsm, layer, tile, tiles, copy, down, laps);
     } else if (plain) {
@@ -112,7 +112,7 @@ SM_INLINE void lsm_solved(bool plain, SmLaps *laps)
 SM_INLINE void lsm_end(Lsm *lsm, bool plain, long block, int blocks, vec (*sum)[6], SmLaps *laps)
 {
     if (lsm->pass->end) {
-        vec copy[TILE_GROUP][6];
+        vec copy[POLAR_TILES][6];
         for (int k = 0; k < blocks; k++) lanes_copy(plain ? 6 : 3, sum[k], copy[k]);
         lsm->pass->end(lsm, block, blocks, copy, laps);
     } else if (plain) {

@@ -92,7 +92,7 @@ static void solve(Lsm *lsm, int layer, long tile, int tiles, vec (*sum)[12], rea
                   SmLaps *laps)
 {
     (void)laps;
-    assert_in_range(tiles, 1, TILE_GROUP);
+    assert_in_range(tiles, 1, POLAR_TILES);
     assert_in_range(tile, lsm->layer_tile[layer], lsm->layer_tile[layer + 1] - tiles);
     for (int t = 0; t < tiles; t++)
         for (int lane = 0; lane < SM_LANES; lane++)

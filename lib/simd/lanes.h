@@ -96,12 +96,32 @@ static const ivec lanes_masks[16] __attribute__((unused)) = {
 #endif
 /* clang-format on */
 
+#if SM_LANES == 4
+SM_INLINE ivec lanes_of_bits(unsigned lanes)
+{
+    return lanes_masks[lanes];
+}
+#endif
+
 #if SM_VECTOR_BYTES == 64
 #include "lanes_avx512.h"
 #elif SM_VECTOR_BYTES == 32
 #include "lanes_avx2.h"
 #else
 #include "lanes_portable.h"
+#endif
+
+#if SM_VECTOR_BYTES < 64
+SM_INLINE vec lanes_choose(unsigned lanes, vec yes, vec no)
+{
+    return lanes_select(lanes_of_bits(lanes), yes, no);
+}
+
+/* Zero in the lanes whose bit is not set. */
+SM_INLINE vec lanes_keep(unsigned lanes, vec v)
+{
+    return (vec)((ivec)v & lanes_of_bits(lanes));
+}
 #endif
 
 SM_INLINE vec lanes_and(vec v, ivec mask)

@@ -56,26 +56,11 @@ SM_INLINE ivec lanes_of_bits(unsigned lanes)
     const __m128i *bytes = (const __m128i *)(lanes_bytes + lanes);
     return (ivec)_mm256_cvtepi8_epi32(_mm_loadl_epi64(bytes));
 }
-#else
-SM_INLINE ivec lanes_of_bits(unsigned lanes)
-{
-    return lanes_masks[lanes];
-}
 #endif
 
 SM_INLINE unsigned lanes_below(vec a, vec b)
 {
     return (unsigned)AVX2(movemask)((native_vec)(a < b));
-}
-
-SM_INLINE vec lanes_choose(unsigned lanes, vec yes, vec no)
-{
-    return lanes_select(lanes_of_bits(lanes), yes, no);
-}
-
-SM_INLINE vec lanes_keep(unsigned lanes, vec v)
-{
-    return (vec)((ivec)v & lanes_of_bits(lanes));
 }
 
 SM_INLINE vec lanes_max(vec a, vec b)

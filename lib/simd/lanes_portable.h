@@ -66,26 +66,10 @@ SM_INLINE bool lanes_any(ivec mask)
 #endif
 }
 
-SM_INLINE ivec lanes_of_bits(unsigned lanes)
-{
-    return lanes_masks[lanes];
-}
-
 /* The lanes where a < b; a NaN is not. */
 SM_INLINE unsigned lanes_below(vec a, vec b)
 {
     return lanes_bits(LANES_BINARY(LANES_LESS, a, b));
-}
-
-SM_INLINE vec lanes_choose(unsigned lanes, vec yes, vec no)
-{
-    return lanes_select(lanes_of_bits(lanes), yes, no);
-}
-
-/* Zero in the lanes whose bit is not set. */
-SM_INLINE vec lanes_keep(unsigned lanes, vec v)
-{
-    return (vec)((ivec)v & lanes_of_bits(lanes));
 }
 
 /* b where one of the two is a NaN. */

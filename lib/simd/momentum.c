@@ -326,8 +326,8 @@ static void add_run(const Momentum *m, long run, RunSum total, MomentumPiece *pi
     double all[SUMS] = {0};
     if (same < 0) lanes_of(m, m->run[run].first, of);
     for (int lane = 0; lane < SM_LANES; lane++) {
-        double *sum = same >= 0 ? all : piece[of[lane].piece].sum;
         if (same < 0 && of[lane].piece < 0) continue;
+        double *sum = same >= 0 ? all : piece[of[lane].piece].sum;
         for (int i = 0; i < SUMS; i++) sum[i] += (double)total[lane][i];
     }
     for (int i = 0; i < SUMS && same >= 0; i++) piece[same].sum[i] += all[i];

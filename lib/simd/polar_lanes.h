@@ -18,8 +18,6 @@
 #include "../polar.h"
 #include "lanes.h"
 
-enum { POLAR_TILES = 4 };
-
 #define POLAR_EACH for (int t = 0; t < tiles; t++)
 
 SM_INLINE void polar_cofactor(const vec A[9], vec C[9])
@@ -62,8 +60,8 @@ SM_INLINE void polar_invariants(const vec A[9], PolarInvariants *of)
 
 /* tr U by Halley's iteration from above: (s1+s2+s3)^2 = I + 2 (s1 s2 + ..) <= I + 2 sqrt(3 II),
  * with equality where all stretches agree. Convergence is cubic, so a small change is the last one.
- * Divided is by what every processor rounds alike: approximate reciprocals have other bits on every
- * maker's, and gain at most 3% of a step. */
+ * Quotients are divisions, which every processor rounds alike: approximate reciprocals differ
+ * between makers, and gain at most 3% of a step. */
 SM_INLINE void polar_trace(int tiles, const PolarInvariants *of, const unsigned *live, vec *l)
 {
     const real enough = SM_REAL_BITS == 32 ? (real)2e-3 : (real)1e-6;
