@@ -315,7 +315,8 @@ void sb_meshless_params_init(sb_meshless_params *params, size_t size);
 
 /* Creates a body, at rest. `surface` is a mesh that it carries, usually that of the voxels, or
  * NULL; a meshless body is made of it, closed. SB_INPUT: an engine that is not here, or parameters
- * that it refuses; the line says which.
+ * that it refuses; SB_USAGE: others out of range, or the environment variable SHAPEBENCH_ISA names
+ * an instruction set that this processor lacks (unset: its best is taken). The line says which.
  * O(particles), up to a few microseconds each. */
 int sb_body_create(const sb_voxels *voxels, const sb_mesh *surface, const sb_body_params *params,
                    sb_body **body, sb_error *error);

@@ -831,6 +831,11 @@ TEST(parameters_out_of_range_are_refused)
     BAD(SB_USAGE, "widths", p.engine = SB_OCTREE; p.octree = &octree; octree.width_count = 1;
         octree.widths[0].radius = NAN);
     BAD(SB_INPUT, "creep", p.engine = SB_OCTREE; p.octree = &octree; octree.creep = NAN);
+    const char *isa = getenv("SHAPEBENCH_ISA");
+    char *was = isa ? strdup(isa) : NULL;
+    BAD(SB_USAGE, "abacus", setenv("SHAPEBENCH_ISA", "abacus", 1));
+    was ? setenv("SHAPEBENCH_ISA", was, 1) : unsetenv("SHAPEBENCH_ISA");
+    free(was);
     sb_voxels_free(voxels);
 }
 
