@@ -253,11 +253,13 @@ TEST(the_settings_printed_have_the_modulus)
     }
 }
 
-/* With all of the relative motion damped away at every step a beam does not swing. */
+/* With all of the relative motion damped away at every step a beam swings by rounding alone. A
+ * lattice's takes 400,000 steps to be found out on some instruction sets, the octree's few on all.
+ */
 TEST(a_beam_that_does_not_swing_is_invalid)
 {
-    run("calibrate --scene small.cfg --w 2 --engine fastlsm --across none --aspect none --step "
-        "none --damping 1 -o bad.h5",
+    run("calibrate --scene small.cfg --w 1 --engine octree --epsilon 0 --across none --aspect none "
+        "--step none --damping 1 -o bad.h5",
         &result);
     assert_int_equal(result.code, 1);
     assert_non_null(strstr(result.err, "1 of 1 specimens are INVALID"));

@@ -17,7 +17,8 @@ typedef struct {
 
 static Scene scene_create(void)
 {
-    Scene scene = {.options = {.nodes = 200,
+    Scene scene = {.options = {.points = TEST_FIGURES ? 0 : 3000,
+                               .nodes = TEST_FIGURES ? 200 : 100,
                                .modes = 30,
                                .material = {.young = 1e5, .poisson = 0.3, .density = 1000}},
                    .params = {.w = 1, .h = 0.01}};
