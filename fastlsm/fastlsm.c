@@ -98,11 +98,12 @@ void lsm_constants(Lsm *lsm)
 {
     static const LsmPass constants = {.solve = keep_constants, .end = no_move};
     size_t count = (size_t)(lsm->blocks + 1) * 3 * SM_LANES;
-    real *x = lsm->x;
-    lsm->x = sm_alloc(count, sizeof(real));
+    real *x = lsm->x, *v = lsm->v;
+    lsm->x = lsm->v = sm_alloc(count, sizeof(real)); /* v may be asked for ahead */
 #pragma omp parallel for schedule(static) num_threads(sm_team_for((long)count / 3))
     for (size_t i = 0; i < count; i++) lsm->x[i] = 1;
     lsm_run(lsm, &constants, NULL);
     free(lsm->x);
     lsm->x = x;
+    lsm->v = v;
 }

@@ -144,7 +144,7 @@ static void break_both(Lsm *lsm, Lsm *twin, const Breaks *breaks, long first)
     size_t shorts = (size_t)lsm->tiles * 6 * SM_LANES;
     short *last = sm_alloc(shorts, sizeof *last);
     memcpy(last, lsm->last, shorts * sizeof *last);
-    lsm_break(lsm, breaks->count - first, breaks->link + first);
+    lsm_break(lsm, breaks->count - first, breaks->count ? &breaks->link[first] : NULL);
     assert_last(lsm, last);
     free(last);
     for (long i = first; i < breaks->count; i++)

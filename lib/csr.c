@@ -35,6 +35,14 @@ size_t sm_csr_bytes(const SmCsr *csr)
     return (size_t)csr->row_space * row + (size_t)csr->space * (sizeof *csr->item + csr->size);
 }
 
+/* Room for so many items. */
+static void make_items(SmCsr *csr, long space)
+{
+    csr->space = space;
+    csr->item = sm_realloc(csr->item, (size_t)space, sizeof *csr->item);
+    if (csr->size) csr->value = sm_realloc(csr->value, (size_t)space, csr->size);
+}
+
 /* Before the first change: where every row ends, and what room it has. */
 static void unpack(SmCsr *csr)
 {
@@ -47,6 +55,7 @@ static void unpack(SmCsr *csr)
     }
     csr->end = end;
     csr->row_space = csr->rows;
+    if (!csr->item) make_items(csr, 0); /* no null pointer, to which nothing may be added */
 }
 
 /* The value beside the item at a place; only where there are values. */
@@ -62,14 +71,6 @@ static void make_rows(SmCsr *csr, long space)
     csr->first = sm_realloc(csr->first, (size_t)space, sizeof *csr->first);
     csr->end = sm_realloc(csr->end, (size_t)space, sizeof *csr->end);
     csr->room = sm_realloc(csr->room, (size_t)space, sizeof *csr->room);
-}
-
-/* Room for so many items. */
-static void make_items(SmCsr *csr, long space)
-{
-    csr->space = space;
-    csr->item = sm_realloc(csr->item, (size_t)space, sizeof *csr->item);
-    if (csr->size) csr->value = sm_realloc(csr->value, (size_t)space, csr->size);
 }
 
 void sm_csr_reserve(SmCsr *csr)

@@ -97,7 +97,8 @@ void oct_ghosts_build(Oct *oct, const OctTree *tree, const OctRegions *regions)
 void oct_ghosts_fill(Oct *oct, const OctTree *tree, const OctWeights *w)
 {
     double place[3];
-    for (OctGhost *g = oct->ghost; g < oct->ghost + oct->ghosts; g++) {
+    for (long i = 0; i < oct->ghosts; i++) {
+        OctGhost *g = &oct->ghost[i];
         g->mass = (real)w->below[g->node];
         g->weight = (real)w->sum[g->node][0];
         oct_row_place(tree, g->node, place);

@@ -54,7 +54,8 @@ void oct_handle_nodes_transfer(OctHandleNodes *nodes, const OctTree *tree, const
 
 void oct_handle_nodes_note(OctHandleNodes *nodes, const Oct *oct)
 {
-    for (struct OctHandleNode *node = nodes->node; node < nodes->node + nodes->count; node++) {
+    for (long i = 0; i < nodes->count; i++) {
+        struct OctHandleNode *node = &nodes->node[i];
         const OctState *body = &oct->body[node->body];
         for (int d = 0; d < 3; d++)
             node->before[d] =
@@ -65,8 +66,8 @@ void oct_handle_nodes_note(OctHandleNodes *nodes, const Oct *oct)
 void oct_handle_nodes_move(const OctHandleNodes *nodes, Oct *oct, const OctStructure *structure,
                            const double (*pose)[3][4])
 {
-    for (const struct OctHandleNode *node = nodes->node; node < nodes->node + nodes->count;
-         node++) {
+    for (long i = 0; i < nodes->count; i++) {
+        const struct OctHandleNode *node = &nodes->node[i];
         OctState *body = &oct->body[node->body];
         double rest[3], x0[3], to[3];
         oct_structure_centre(structure, node->leaf, rest);

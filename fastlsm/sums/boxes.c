@@ -255,20 +255,19 @@ SM_INLINE void stage_z_up(const Lsm *lsm, long block, int w, bool plain, bool mo
 }
 
 /* The stages up along z and x for values 3 k + d of a run, d = first .. first + count - 1, into a
- * row of the ring `above`: 1 -> 2 -> 3 values of each d. `kept` are the windows of its row. */
+ * row of the ring `above`: 1 -> 2 -> 3 values of each d. `kept` are its windows. */
 SM_INLINE void run_up(const Lsm *lsm, const BlockRun *run, int w, bool plain, bool moving,
                       int first, int count, real *kept, real *row)
 {
     int n = plain ? 4 : 2, last = run->first + run->count - 1;
     real *out = row + run->column * (long)BLOCK + first * SM_LANES;
-    kept += run->column * (long)BLOCK;
     vec before[3][4], here[3][4], after[3][4], moment = lanes_set(0);
     for (int d = 0; d < count; d++) {
         stage_z_up(lsm, run->first, w, plain, moving, first + d, kept, here[d]);
         for (int k = 0; k < n; k++) before[d][k] = after[d][k] = lanes_set(0);
     }
     for (int block = run->first; block <= last; block++, out += BLOCK) {
-        kept += BLOCK;
+        if (w >= RUNNING) kept += BLOCK;
         for (int d = 0; d < count; d++) {
             if (block < last)
                 stage_z_up(lsm, block + 1, w, plain, moving, first + d, kept, after[d]);
@@ -292,7 +291,6 @@ SM_INLINE void run_up_far(const Lsm *lsm, const BlockRun *run, int w, bool plain
 {
     int n = plain ? 4 : 2;
     real *first = row + run->column * (long)BLOCK;
-    kept += run->column * (long)BLOCK;
     for (int i = 0; i < run->count; i++)
         for (int d = 0; d < 3; d++) {
             vec sum[4];
@@ -339,7 +337,7 @@ SM_INLINE void row_up(const Lsm *lsm, const Scratch *s, BlockRow at, int slot, i
     real *row = row_for(s, 0, slot, at);
     for (int i = 0; i < at.runs; i++) {
         const BlockRun *run = at.run + i;
-        real *kept = w >= RUNNING ? s->plane + run->y * s->pitch : NULL;
+        real *kept = w >= RUNNING ? s->plane + run->y * s->pitch + run->column * (long)BLOCK : NULL;
         prefetch_run(lsm, run, w, plain);
         if (w >= RUNNING && run->moves_z)
             run_up_all(lsm, run, w, plain, true, kept, row);

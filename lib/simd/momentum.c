@@ -103,17 +103,19 @@ static bool all_the_same(const Lane lane[SM_LANES])
     return true;
 }
 
+/* Has a block's SM_LANES entries what the block before has? */
+static bool repeats(const int *of, long block)
+{
+    const int *here = of + block * SM_LANES;
+    return !memcmp(here, here - SM_LANES, SM_LANES * sizeof *here);
+}
+
 /* Are its lanes of the pieces and frames of those of the block before? Abreast labels are of all
  * lanes, and only the last group of bodies has fewer. */
 static bool like_before(const Momentum *m, long block)
 {
     Lane here[SM_LANES], before[SM_LANES];
-    if (!m->abreast) {
-        const int *label = m->label + block * SM_LANES, *frame = m->frame + block * SM_LANES;
-        size_t size = SM_LANES * sizeof(int);
-        return !memcmp(label, label - SM_LANES, size) &&
-               (!m->frame || !memcmp(frame, frame - SM_LANES, size));
-    }
+    if (!m->abreast) return repeats(m->label, block) && (!m->frame || repeats(m->frame, block));
     lanes_of(m, block, here);
     lanes_of(m, block - 1, before);
     return !memcmp(here, before, sizeof here);

@@ -125,9 +125,9 @@ static void read_row(Rays *r, int j, int k)
         for (size_t w = 0; w < words; w++) toggle[w] = parity(toggle[w], &carry);
         return;
     }
-    size_t back = r->axis == 1 ? words : words * (size_t)size[1];
     if ((r->axis == 1 ? j : k) == 0) return;
-    for (size_t w = 0; w < words; w++) toggle[w] ^= toggle[w - back];
+    const uint64_t *before = toggle - (r->axis == 1 ? words : words * (size_t)size[1]);
+    for (size_t w = 0; w < words; w++) toggle[w] ^= before[w];
 }
 
 /* Adds the axis's votes: `one` holds the cells with a vote, `two` those with two or more. */

@@ -113,7 +113,8 @@ static void list_leaf(OctRegionChange *c, int leaf, unsigned char what)
 void oct_region_change_note(OctRegionChange *c, const OctEdges *edges)
 {
     sm_make_room(c->source, c->source_room, c->source_count + 2 * edges->count);
-    for (const OctEdge *edge = edges->edge; edge < edges->edge + edges->count; edge++) {
+    for (long i = 0; i < edges->count; i++) {
+        const OctEdge *edge = &edges->edge[i];
         c->source[c->source_count++] = (struct OctSource){edge->leaf, edge->length};
         c->source[c->source_count++] = (struct OctSource){edge->other, edge->length};
     }
