@@ -367,7 +367,8 @@ TEST(test_threads)
     }
 }
 
-/* Each of several bodies moves as it would alone. */
+/* Each of several bodies moves as it would alone. What is added to v is exact, fused with the sum
+ * or not. */
 TEST(test_instances)
 {
     Body body;
@@ -377,12 +378,13 @@ TEST(test_instances)
     Oct *all = create(&body, params);
     for (long k = 0; k < 5; k++) {
         real *v = all->body[k].v;
-        for (long i = 0; i < body.n; i++) v[oct_index(i, 0)] += (real)(0.01 * (double)k);
+        for (long i = 0; i < body.n; i++) v[oct_index(i, 0)] += (real)(0x1p-7 * (double)k);
     }
     for (int step = 0; step < 20; step++) oct_step(all, NULL);
     for (long k = 0; k < 5; k++) {
         Oct *one = create(&body, alone);
-        for (long i = 0; i < body.n; i++) one->body->v[oct_index(i, 0)] += (real)(0.01 * (double)k);
+        for (long i = 0; i < body.n; i++)
+            one->body->v[oct_index(i, 0)] += (real)(0x1p-7 * (double)k);
         for (int step = 0; step < 20; step++) oct_step(one, NULL);
         get(all, k, all->body[k].x, true, body.a);
         get_x(one, body.b);

@@ -51,6 +51,7 @@ ENDS = (signal.SIGKILL, signal.SIGHUP, signal.SIGINT, signal.SIGTERM, signal.SIG
 WHOLE = {".obj": b"\n", ".json": b"}\n", ".html": b"</html>", ".svg": b"</svg>", ".png": b"IEND\xaeB`\x82"}
 REGRESS_CODES = (0, 5, 7)  # what it finds is no matter here
 EVER = 300  # s
+LEAST = 1024  # bytes that clang's OpenMP must be allowed to write
 
 
 class Wrong(Exception):
@@ -172,7 +173,8 @@ class Trial:
 
     def by_limit(self, name, chance):
         """Ends it by a limit on file sizes, which stands in for a full disk."""
-        limit = chance.randrange(max(1, self.size[name] or 2000))
+        size = max(1, self.size[name] or 2000)
+        limit = chance.randrange(min(LEAST, size - 1), size)
         done = self.start(self.words(name, True), preexec_fn=lambda: resource.setrlimit(
             resource.RLIMIT_FSIZE, (limit, resource.RLIM_INFINITY)))
         said = done.communicate(timeout=EVER)[1]

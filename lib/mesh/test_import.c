@@ -365,7 +365,7 @@ static int body_hungry(void *argument, int reply)
     (void)argument;
     (void)reply;
     for (int megabyte = 0; megabyte < 1024; megabyte++) {
-        char *block = malloc(1 << 20);
+        char *volatile block = malloc(1 << 20); /* or clang leaves it out */
         if (!block) return SM_CHILD_NO_MEMORY;
         memset(block, 1, 1 << 20);
     }

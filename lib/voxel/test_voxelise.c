@@ -6,16 +6,14 @@
 #include <limits.h>
 
 #include "../mesh/import.h"
+#include "../system/child.h"
 #include "../test_frame.h"
 #include "../test_random.h"
 
 static unsigned seed = 1;
 
-#ifdef __SANITIZE_ADDRESS__
-#define PEAK_MEGABYTES 1000 /* freed memory is quarantined */
-#else
-#define PEAK_MEGABYTES 200
-#endif
+/* Sanitizers quarantine freed memory. */
+#define PEAK_MEGABYTES (SM_CHILD_LIMITS_MEMORY ? 200 : 1000)
 
 /* The vertex at ring i of `rings`, step j of `steps`; rings 0 and `rings` are the poles. */
 static int ring_vertex(int i, int j, int rings, int steps)

@@ -355,6 +355,7 @@ class Report(unittest.TestCase):
                 damaged[chance.randrange(100, len(whole))] = chance.randrange(256)
             with open(self.at("damaged.h5"), "wb") as file:
                 file.write(damaged)
+            sources.stored.check.cache_clear()
             try:
                 sources.read(self.at("damaged.h5"))
             except sources.Unusable as error:
