@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
-# Tests the core (SHAPEBENCH_CORE) for processors that this machine is not, and its scalar form under
-# every sanitizer:
+# Tests the core (SHAPEBENCH_CORE) for processors that this machine is not, its scalar form under
+# every sanitizer, and all of the program under clang's:
 #   arm        64-bit ARM under qemu; where its bodies come to lie is held to where this machine's do
 #   avx2       x86-64 with AVX2 under qemu, where this machine has none
+#   clang      all tests as clang compiles them, under its address and undefined sanitizer
 #   portable   SHAPEBENCH_SCALAR under the address and undefined, then under the thread sanitizer
 #   wasm       WebAssembly with simd128: that all kernels compile
 # Emulated, arithmetic is some fifty times slower: the tests that take longest are left out unless TESTS, a
 # regular expression of names, asks for them.
 #
-# usage: scripts/check_processors.sh arm|avx2|portable|wasm [TESTS]
+# usage: scripts/check_processors.sh arm|avx2|clang|portable|wasm [TESTS]
 # exit codes: 0 all passed, 1 something failed, 2 not so called, 3 packages are missing and were named
 set -u
 # shellcheck source=scripts/setup
@@ -74,12 +75,13 @@ wasm() {
 }
 
 case ${1-} in
-arm | avx2 | portable | wasm) ;;
-*) say "usage: scripts/check_processors.sh arm|avx2|portable|wasm [TESTS]" && exit 2 ;;
+arm | avx2 | clang | portable | wasm) ;;
+*) say "usage: scripts/check_processors.sh arm|avx2|clang|portable|wasm [TESTS]" && exit 2 ;;
 esac
 case $1 in
 arm) setup_packages core gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user ;;
 avx2) setup_packages core qemu-user ;;
+clang) setup_packages test ;;
 portable) setup_packages core clang libomp-dev libclang-rt-14-dev ;;
 wasm) setup_packages core clang libomp-dev wasi-libc ;;
 esac
@@ -87,6 +89,11 @@ case $1 in
 avx2) # qemu 7.2 reads what a masked load leaves out, so lib_lanes fails there, not on a processor
     tests build-avx2 "${2-${quick/lanes|/}(_avx2(_f64)?)?\$}" -DCMAKE_BUILD_TYPE=Release \
         "-DCMAKE_CROSSCOMPILING_EMULATOR=qemu-x86_64;-cpu;max" ;;
+clang)
+    export LSAN_OPTIONS="suppressions='$root/scripts/leaks.supp':print_suppressions=0"
+    tests build-clang-asan "${2-.}" -DSHAPEBENCH_CORE=OFF -DCMAKE_C_COMPILER=clang -DCMAKE_BUILD_TYPE=RelWithDebInfo \
+        -DSHAPEBENCH_SANITIZE=address,undefined -DSHAPEBENCH_NATIVE=ON
+    ;;
 wasm) wasm ;;
 *) "$1" "${2-$quick(_f64)?\$}" ;;
 esac
