@@ -165,6 +165,7 @@ endif()
 get_property(tests DIRECTORY PROPERTY TESTS)
 foreach(test bench_calibrate bench_regress fastlsm_fastlsm bench_kernels bench_sweep_run meshless_engine
         bench_points octree_octree_f64 fastlsm_fracture fastlsm_fracture_f64 octree_octree
+        bench_gap bench_threads bench_command bench_experiment
         render brute_force damage writers scenes report install)
   if(test IN_LIST tests)
     set_tests_properties(${test} PROPERTIES COST 1)
