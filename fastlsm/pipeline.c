@@ -1,7 +1,6 @@
 #include "pipeline.h"
 #include "../lib/system/team.h"
 
-#include <omp.h>
 #include <stdlib.h>
 
 enum { BLOCKS_WORTH_A_THREAD = 128 };

@@ -2,11 +2,18 @@
 #ifndef SM_TEST_RANDOM_H
 #define SM_TEST_RANDOM_H
 
-#include <stdlib.h>
-
-static inline double random_unit(unsigned *seed) /* 0 to 1 */
+/* So many bits of the next number. */
+static inline unsigned random_bits(unsigned *seed, int bits)
 {
-    return rand_r(seed) / (double)RAND_MAX;
+    *seed = *seed * 1103515245u + 12345u;
+    return *seed >> 16 & ((1u << bits) - 1);
+}
+
+/* 0 to 1; the numbers of glibc's rand_r(), with any library. */
+static inline double random_unit(unsigned *seed)
+{
+    unsigned high = random_bits(seed, 11), middle = random_bits(seed, 10);
+    return (high << 20 ^ middle << 10 ^ random_bits(seed, 10)) / 2147483647.0;
 }
 
 static inline double random_between(unsigned *seed, double low, double high)

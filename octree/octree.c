@@ -12,9 +12,9 @@
 #include "octree.h"
 
 #include <assert.h>
-#include <omp.h>
 #include <string.h>
 
+#include "../lib/system/team.h"
 #include "collinear_regions.h"
 #include "damping.h"
 #include "ghosts.h"

@@ -5,7 +5,7 @@
 #   avx2       x86-64 with AVX2 under qemu, where this machine has none
 #   clang      all tests as clang compiles them, under its address and undefined sanitizer
 #   portable   SHAPEBENCH_SCALAR under the address and undefined, then under the thread sanitizer
-#   wasm       WebAssembly with simd128: that all kernels compile
+#   wasm       WebAssembly with simd128: that the core compiles
 # Emulated, arithmetic is some fifty times slower: the tests that take longest are left out unless TESTS, a
 # regular expression of names, asks for them.
 #
@@ -62,18 +62,6 @@ portable() {
             -DSHAPEBENCH_SANITIZE=thread
 }
 
-wasm() {
-    local source bits failed=0
-    for source in "$root"/{lib/simd,fastlsm,fastlsm/sums,octree,octree/search,octree/surface,lib/voxel}/[!t]*.c; do
-        for bits in 32 64; do
-            clang --target=wasm32-wasi -msimd128 -O2 -c -o /dev/null -std=gnu11 -Wall -Wextra -Werror \
-                -Wno-unknown-pragmas -Wno-unused-variable -Wno-pass-failed -fno-math-errno -DSM_REAL_BITS=$bits -DSM_ISA_NATIVE \
-                "$source" || failed=1
-        done
-    done
-    return "$failed"
-}
-
 case ${1-} in
 arm | avx2 | clang | portable | wasm) ;;
 *) say "usage: scripts/check_processors.sh arm|avx2|clang|portable|wasm [TESTS]" && exit 2 ;;
@@ -83,7 +71,7 @@ arm) setup_packages core gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user ;
 avx2) setup_packages core qemu-user ;;
 clang) setup_packages test ;;
 portable) setup_packages core clang libomp-dev libclang-rt-14-dev ;;
-wasm) setup_packages core clang libomp-dev wasi-libc ;;
+wasm) setup_packages core clang lld llvm wasi-libc libclang-rt-14-dev-wasm32 ;;
 esac
 case $1 in
 avx2) # qemu 7.2 reads what a masked load leaves out, so lib_lanes fails there, not on a processor
@@ -94,6 +82,6 @@ clang)
     tests build-clang-asan "${2-.}" -DSHAPEBENCH_CORE=OFF -DCMAKE_C_COMPILER=clang -DCMAKE_BUILD_TYPE=RelWithDebInfo \
         -DSHAPEBENCH_SANITIZE=address,undefined -DSHAPEBENCH_NATIVE=ON
     ;;
-wasm) wasm ;;
+wasm) PKG_CONFIG_LIBDIR=/dev/null build build-wasm all -DSHAPEBENCH_CORE=ON "-DCMAKE_TOOLCHAIN_FILE=$root/scripts/wasm.cmake" ;;
 *) "$1" "${2-$quick(_f64)?\$}" ;;
 esac

@@ -1,6 +1,6 @@
 #include "../voxel/embed.h"
 
-#include <omp.h>
+#include "../system/team.h"
 
 #include "../pieces.h"
 #include "../shapes/shape.h"

@@ -4,8 +4,10 @@
 
 #include <float.h>
 
+#ifdef __linux__
 #include <sys/mman.h>
 #include <unistd.h>
+#endif
 
 #include "../test_frame.h"
 #include "../test_random.h"
@@ -217,15 +219,26 @@ static void check_part(part_vec part, const real *from, unsigned lanes)
     }
 }
 
-/* An array between two pages that nobody may read. */
-TEST(parts_of_vectors_read_what_is_asked_for_alone)
+/* A page, for the rest of the program; between two that nobody may read where the system can. */
+static real *page_apart(real **end)
 {
+#ifdef __linux__
     size_t page = (size_t)sysconf(_SC_PAGESIZE);
     char *pages = mmap(NULL, 3 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     assert_true(pages != MAP_FAILED);
     assert_int_equal(mprotect(pages, page, PROT_NONE), 0);
     assert_int_equal(mprotect(pages + 2 * page, page, PROT_NONE), 0);
-    real *first = (real *)(pages + page), *end = (real *)(pages + 2 * page);
+#else
+    enum { page = 4096 };
+    static char pages[3 * page] __attribute__((aligned(64)));
+#endif
+    *end = (real *)(pages + 2 * page);
+    return (real *)(pages + page);
+}
+
+TEST(parts_of_vectors_read_what_is_asked_for_alone)
+{
+    real *end, *first = page_apart(&end);
     unsigned seed = 7;
     for (real *p = first; p < end; p += SM_LANES) lanes_store(p, special_vec(&seed));
     for (int out = 0; out <= SM_PART; out++) { /* lanes beyond the end, or before the start */
@@ -238,7 +251,6 @@ TEST(parts_of_vectors_read_what_is_asked_for_alone)
         vec joined = lanes_join(parts);
         assert_memory_equal(&joined, parts, sizeof joined);
     }
-    munmap(pages, 3 * page);
 }
 
 TEST(interleaved_vectors_are_rows_of_lanes)

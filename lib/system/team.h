@@ -7,7 +7,34 @@
 #ifndef SM_TEAM_H
 #define SM_TEAM_H
 
+#ifdef _OPENMP
 #include <omp.h>
+#else /* one thread */
+static inline int omp_get_max_threads(void)
+{
+    return 1;
+}
+
+static inline int omp_get_num_threads(void)
+{
+    return 1;
+}
+
+static inline int omp_get_thread_num(void)
+{
+    return 0;
+}
+
+static inline int omp_in_parallel(void)
+{
+    return 0;
+}
+
+static inline void omp_set_num_threads(int threads)
+{
+    (void)threads;
+}
+#endif
 
 enum { SM_MOST_THREADS = 1024 }; /* OpenMP's runtimes crash some way beyond */
 

@@ -97,7 +97,7 @@ static bool place(const Voxeliser *v, double cell, const double shift[3], Placem
         cells *= at->size[d];
     }
     double padded = ceil(at->size[0] / 64.0) * 64 * at->size[1] * at->size[2];
-    return cells <= 2147483648.0 && padded <= 4294967296.0;
+    return cells <= 2147483648.0 && padded <= fmin(4294967296.0, (double)LONG_MAX);
 }
 
 /* 64-bit words of a lattice of this cell size, moved by half a cell; INFINITY beyond the limits. */

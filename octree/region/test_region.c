@@ -3,7 +3,7 @@
 
 #include <limits.h>
 
-#include <omp.h>
+#include "../../lib/system/team.h"
 
 #include "../../lib/test_frame.h"
 #include "../../reference/octree_regions.h"
@@ -177,7 +177,8 @@ TEST(a_row_has_the_regions_found_by_hand)
     assert_region(&t, &r, 1, 2, "0-2");
     assert_region(&t, &r, 5, 10, "0-1 5-1");
     assert_int_equal(r.size[0], 8);
-    assert_int_equal(oct_regions_bytes(&r) - sizeof r, 8 * 9 + 8 * 8 + 4 * r.members.live);
+    assert_int_equal(oct_regions_bytes(&r) - sizeof r,
+                     9 * (long)sizeof(long) + 8 * 8 + 4 * r.members.live);
     oct_regions_free(&r);
     /* or loses its leaf to them, or has them without their having it */
     assert_int_equal(oct_regions_build(&t, &g, one, 0, OCT_INTERSECTION, &r, NULL), SM_OK);

@@ -1,6 +1,6 @@
 #include "surface.h"
 
-#include <omp.h>
+#include "../../lib/system/team.h"
 
 #include "../../lib/test_frame.h"
 #include "../tree/sampling.h"
