@@ -252,11 +252,10 @@ TEST(test_recovery)
     }
 }
 
-/* Any number of threads gives the bits that one gives. Sanitizers see two threads or the most. */
+/* Any number of threads gives the bits that one gives. */
 static void check_threads(Body *body, int w, SmLayout layout, int most)
 {
     for (int threads = 1; threads <= most; threads += most > 5 && threads < 2 ? 1 : 2) {
-        if (!TEST_FIGURES && threads > 2 && threads < most) continue;
         SmEngineParams params = {
             .w = w, .h = 0.01, .damping = 0.3, .threads = threads, .layout = layout};
         SmEngine *engine = create(&fastlsm_engine_f32, body, params);
