@@ -1,9 +1,8 @@
 #include "../voxel/embed.h"
 
-#include "../system/team.h"
-
 #include "../pieces.h"
 #include "../shapes/shape.h"
+#include "../system/team.h"
 #include "../test_frame.h"
 #include "../vector.h"
 #include "../voxel/voxelise.h"

@@ -2,7 +2,6 @@
 #include "graph.h"
 
 #include "../../lib/system/team.h"
-
 #include "../../lib/test_frame.h"
 #include "../../reference/octree_regions.h"
 #include "../tree/test_trees.h"

@@ -4,7 +4,6 @@
 #include <limits.h>
 
 #include "../../lib/system/team.h"
-
 #include "../../lib/test_frame.h"
 #include "../../reference/octree_regions.h"
 #include "../tree/test_trees.h"

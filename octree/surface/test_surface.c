@@ -1,7 +1,6 @@
 #include "surface.h"
 
 #include "../../lib/system/team.h"
-
 #include "../../lib/test_frame.h"
 #include "../tree/sampling.h"
 #include "../tree/test_trees.h"

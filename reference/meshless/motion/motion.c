@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../../lib/isa.h"
 #include "../../../lib/vector.h"
 #include "frame_sums.h"
 #include "rotation.h"
@@ -26,6 +27,8 @@ void ref_motion_free(RefMotion *motion)
                 motion->force);
     *motion = (RefMotion){0};
 }
+
+SM_ISA_TABLE(RefFrameSums, ref_frame_sums)
 
 static double dot(int count, const double *a, const double *b)
 {
