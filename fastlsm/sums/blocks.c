@@ -4,6 +4,7 @@
 #include "../../lib/system/team.h"
 #include "../pipeline.h"
 #include "blocks.h"
+#include "prefix_sums.h"
 
 /* The lanes of block `column` of row (y, z) with a particle, as bits. */
 static uint64_t occupied(const LsmLattice *l, int column, long row)
@@ -130,7 +131,7 @@ int lsm_blocks_at(const Lsm *lsm, int column, int y, int z)
 static void find_neighbours(const Lsm *lsm, Blocks *box, int z, BlockRun *run)
 {
     int none = (int)lsm->blocks, w = lsm->w;
-    run->moves_y = box->running && run->y % RESTART;
+    run->moves_y = box->running && run->y % RESTART_ROW;
     run->moves_z = box->running && z % RESTART;
     for (int i = 0; i < run->count; i++) {
         int column = run->column + i, *along = box->along_z + (run->first + i) * (long)lsm->side;
@@ -237,7 +238,8 @@ bool lsm_blocks_regular(const Lsm *lsm, long p, const uint64_t *rows)
 static size_t scratch_size(const Lsm *lsm)
 {
     size_t width = (size_t)lsm->box->width, side = (size_t)lsm->side;
-    return width * SM_LANES * (2 * (side + 1) * 12 + 3 * 12);
+    return width * SM_LANES * (2 * (side + 1) * 12 + 3 * 12) +
+           (width + 2 * PREFIX_AROUND((size_t)lsm->w)) * (sizeof(Prefixes) / sizeof(real));
 }
 
 /* Reals of one thread's z windows, up and down. */

@@ -13,7 +13,9 @@
 #define lsm_blocks_free    SM_NAME(lsm_blocks_free)
 #define lsm_blocks_bytes   SM_NAME(lsm_blocks_bytes)
 
-enum { RUNNING = 3, RESTART = 8 };
+/* From which w on sums move along y and z, and after how many planes and rows they are summed anew.
+ * Planes in between are one thread's: more of them would leave fewer threads something to do. */
+enum { RUNNING = 3, RESTART = 8, RESTART_ROW = 32 };
 
 /* Blocks that touch along x. A row may have several runs. */
 typedef struct {

@@ -4,10 +4,10 @@
  * around a region's centre: first along z, then x, then y on the way up, and back in the order y,
  * x, z on the way down, so that all but the last stage happens within a plane, in rows that stay in
  * the L1 cache. From w = RUNNING on, sums along y and z are windows that move: O(1). They are
- * summed anew at every RESTART-th row and plane, or rounding would add up. Along x lanes slide, and
- * from w = FAR on prefixes are subtracted, O(1) too. Empty sites hold zero. A
- * region whose box sum is not its exact sum (a gap, a corner, a broken link within its box) is
- * made so by fix-ups (box_sum_fixups.h) or summed by its lists instead, lane by lane. */
+ * summed anew at every RESTART_ROW-th row and RESTART-th plane, or rounding would add up. Along x
+ * lanes slide, and from w = FAR on prefixes are subtracted. Empty sites hold zero. A region whose
+ * box sum is not its exact sum (a gap, a corner, a broken link within its box) is made so by
+ * fix-ups (box_sum_fixups.h) or summed by its lists instead, lane by lane. */
 #include "blocks.h"
 
 #include <string.h>
@@ -33,14 +33,15 @@ SM_INLINE void prefetch_ahead(const Lsm *lsm, const real *of, long block)
 
 /* Scratch of a thread. Rings hold the last 2 w + 2 rows of a plane, each [width][BLOCK]. */
 typedef struct {
-    long pitch;      /* values in a row */
-    int ring;        /* rows in a ring */
-    real *above;     /* [ring] rows after the stages up along z and x */
-    real *below;     /* [ring] rows after `solve` */
-    BlockRow *held;  /* [2][ring] whose blocks the rows hold: elsewhere they are zero */
-    real *window[2]; /* up, down: each column's window of the y stage, [BLOCK] */
-    real *line;      /* a row of one run */
-    real *plane;     /* up: each place's window of the z stage, [BLOCK] */
+    long pitch;         /* values in a row */
+    int ring;           /* rows in a ring */
+    real *above;        /* [ring] rows after the stages up along z and x */
+    real *below;        /* [ring] rows after `solve` */
+    BlockRow *held;     /* [2][ring] whose blocks the rows hold: elsewhere they are zero */
+    real *window[2];    /* up, down: each column's window of the y stage, [BLOCK] */
+    real *line;         /* a row of one run */
+    Prefixes *prefixes; /* along x, of one value of a run */
+    real *plane;        /* up: each place's window of the z stage, [BLOCK] */
 } Scratch;
 
 static Scratch scratch_of(const Lsm *lsm, int thread)
@@ -52,6 +53,7 @@ static Scratch scratch_of(const Lsm *lsm, int thread)
     s.window[0] = s.below + s.ring * s.pitch;
     s.window[1] = s.window[0] + s.pitch;
     s.line = s.window[1] + s.pitch;
+    s.prefixes = (Prefixes *)(s.line + s.pitch);
     s.plane = lsm->box->window[thread];
     s.held = lsm->box->held[thread];
     return s;
@@ -120,31 +122,26 @@ enum { FEW_REGISTERS = SM_VECTOR_BYTES < 64 };
 /* From this width on. */
 enum { FAR = SM_LANES >= 8 ? 8 : 5 };
 
-SM_INLINE void far_sum_of(real *value, int count, long stride, int w, int whole, long moment)
+/* The sums along x of `values` values of a run, in place, and their moments as prefix_sums_far()
+ * has them. */
+static __attribute__((noinline)) void far_sums(Prefixes *at, int w, real *value, int values,
+                                               int count)
 {
-    const int ahead = whole + 1, blocks = 2 * ahead + 1;
-    Prefixes none = prefixes_of(lanes_set(0), false), at[PREFIX_MOST];
-    for (int k = 0; k < blocks; k++) at[k] = none;
-    for (int i = 0; i < count + ahead; i++) {
-        for (int k = 0; k + 1 < blocks; k++) at[k] = at[k + 1];
-        at[blocks - 1] =
-            i < count ? prefixes_of(lanes_load(value + i * stride), moment != 0) : none;
-        if (i < ahead) continue;
-        vec weighed = lanes_set(0);
-        real *to = value + (i - ahead) * stride;
-        lanes_store(to, window_prefixes_x(at, w, whole, moment ? &weighed : NULL));
-        if (moment) lanes_store(to + moment, weighed);
-    }
+    for (int f = 0; f < values; f++, value += SM_LANES)
+        if (w <= SM_LANES)
+            prefix_sums_near(w, value, count, BLOCK, 0);
+        else
+            prefix_sums_far(at, w, value, count, BLOCK, 0);
 }
 
-/* Sums one value along x over `count` blocks that lie `stride` apart, in place; and its moments,
- * `moment` values further on, unless that is 0. */
-SM_INLINE void far_sum(real *value, int count, long stride, int w, long moment)
+static __attribute__((noinline)) void far_moments(Prefixes *at, int w, real *value, int count,
+                                                  long moment)
 {
-    if (w <= SM_LANES)
-        far_sum_of(value, count, stride, w, 0, moment);
-    else
-        far_sum_of(value, count, stride, w, PREFIX_BLOCKS(w), moment);
+    for (int d = 0; d < 3; d++, value += SM_LANES)
+        if (w <= SM_LANES)
+            prefix_sums_near(w, value, count, BLOCK, moment);
+        else
+            prefix_sums_far(at, w, value, count, BLOCK, moment);
 }
 
 /* Value f of the y stage at a column, and its moment, number m, unless that is NULL. */
@@ -287,7 +284,7 @@ SM_INLINE void run_up(const Lsm *lsm, const BlockRun *run, int w, bool plain, bo
 
 /* The same where w >= FAR, for all d. */
 SM_INLINE void run_up_far(const Lsm *lsm, const BlockRun *run, int w, bool plain, bool moving,
-                          real *kept, real *row)
+                          real *kept, Prefixes *at, real *row)
 {
     int n = plain ? 4 : 2;
     real *first = row + run->column * (long)BLOCK;
@@ -298,15 +295,16 @@ SM_INLINE void run_up_far(const Lsm *lsm, const BlockRun *run, int w, bool plain
             for (int k = 0; k < n; k++)
                 lanes_store(first + i * (long)BLOCK + (3 * k + d) * SM_LANES, sum[k]);
         }
-    for (int f = 0; f < 3 * n; f++)
-        far_sum(first + f * SM_LANES, run->count, BLOCK, w, plain || f > 2 ? 0 : 6 * SM_LANES);
+    int summed = plain ? 0 : 3;
+    if (!plain) far_moments(at, w, first, run->count, 6 * SM_LANES);
+    far_sums(at, w, first + summed * SM_LANES, 3 * n - summed, run->count);
 }
 
 SM_INLINE void run_up_all(const Lsm *lsm, const BlockRun *run, int w, bool plain, bool moving,
-                          real *kept, real *row)
+                          real *kept, Prefixes *at, real *row)
 {
     if (w >= FAR && lsm->box->running) {
-        run_up_far(lsm, run, w, plain, moving, kept, row);
+        run_up_far(lsm, run, w, plain, moving, kept, at, row);
         return;
     }
     if (plain || FEW_REGISTERS) /* in turn: all at once would not fit into registers */
@@ -340,9 +338,9 @@ SM_INLINE void row_up(const Lsm *lsm, const Scratch *s, BlockRow at, int slot, i
         real *kept = w >= RUNNING ? s->plane + run->y * s->pitch + run->column * (long)BLOCK : NULL;
         prefetch_run(lsm, run, w, plain);
         if (w >= RUNNING && run->moves_z)
-            run_up_all(lsm, run, w, plain, true, kept, row);
+            run_up_all(lsm, run, w, plain, true, kept, s->prefixes, row);
         else
-            run_up_all(lsm, run, w, plain, false, kept, row);
+            run_up_all(lsm, run, w, plain, false, kept, s->prefixes, row);
     }
 }
 
@@ -475,7 +473,7 @@ SM_INLINE void run_down(const Lsm *lsm, const Around *in, const BlockRun *run, i
 
 /* The same where w >= FAR, for all d; `line` is room for a row. */
 SM_INLINE void run_down_far(const Lsm *lsm, const Around *in, const BlockRun *run, int w,
-                            bool plain, bool moving, real *line, real *out)
+                            bool plain, bool moving, real *line, Prefixes *at, real *out)
 {
     int n = plain ? 2 : 3;
     for (int i = 0; i < run->count; i++)
@@ -485,8 +483,8 @@ SM_INLINE void run_down_far(const Lsm *lsm, const Around *in, const BlockRun *ru
             for (int k = 0; k < n; k++)
                 lanes_store(line + i * (long)BLOCK + (3 * k + d) * SM_LANES, sum[k]);
         }
-    for (int f = 0; f < 3 * n; f++)
-        far_sum(line + f * SM_LANES, run->count, BLOCK, w, f < 6 ? 0 : 3 * SM_LANES);
+    far_sums(at, w, line, 6, run->count);
+    if (!plain) far_moments(at, w, line + 6 * SM_LANES, run->count, 3 * SM_LANES);
     for (int i = 0; i < run->count; i++, line += BLOCK, out += BLOCK_DOWN)
         for (int f = 0; f < 6; f++) {
             vec sum = lanes_load(line + f * SM_LANES);
@@ -505,9 +503,9 @@ SM_INLINE void row_down(const Lsm *lsm, const Scratch *s, BlockRow at, int newes
         real *out = lsm->box->down[plane] + (run->first - lsm->layer_block[plane]) * BLOCK_DOWN;
         if (w >= FAR && in.running) {
             if (run->moves_y)
-                run_down_far(lsm, &in, run, w, plain, true, s->line, out);
+                run_down_far(lsm, &in, run, w, plain, true, s->line, s->prefixes, out);
             else
-                run_down_far(lsm, &in, run, w, plain, false, s->line, out);
+                run_down_far(lsm, &in, run, w, plain, false, s->line, s->prefixes, out);
             continue;
         }
         if (w < RUNNING && !FEW_REGISTERS)

@@ -93,35 +93,50 @@ TEST(adjoints_of_windows_are_summed_anew_and_by_moving)
     }
 }
 
-/* Along x, the middle one of blocks: by sliding, which takes one to either side, and by prefixes.
- */
+/* Lane i of a run against its terms; beyond the run there are zeros. */
+static void check_along_x(const real *value, int lanes, int w, int i, real sum, real moment)
+{
+    real want = 0, want_moment = 0;
+    for (int a = -w; a <= w; a++)
+        if (i + a >= 0 && i + a < lanes) {
+            want += value[i + a];
+            want_moment += (real)a * value[i + a];
+        }
+    if (sum != want || moment != want_moment)
+        fail_msg("w %d, place %d of %d: sum %g, moment %g; wanted %g, %g", w, i, lanes, (double)sum,
+                 (double)moment, (double)want, (double)want_moment);
+}
+
+/* Along x, runs of blocks: by sliding, which takes one block to either side, and by prefixes. */
 TEST(windows_along_x_slide_or_subtract_prefixes)
 {
+    enum { MOST_BLOCKS = 12, STRIDE = 3 * SM_LANES, MOMENT = 2 * SM_LANES };
     unsigned seed = 3;
     for (int trial = 0; trial < 20; trial++)
         for (int w = 1; w <= SM_MOST_W; w++) {
-            enum { BLOCKS = PREFIX_MOST, LANES = BLOCKS * SM_LANES };
-            real value[LANES];
-            for (int i = 0; i < LANES; i++) value[i] = (real)(random_int(&seed, 31) - 15);
-            vec block[BLOCKS], sum = {0}, moment = {0}, prefix_moment = {0};
-            Prefixes prefix[BLOCKS];
-            for (int b = 0; b < BLOCKS; b++) {
-                block[b] = lanes_load(value + b * SM_LANES);
-                prefix[b] = prefixes_of(block[b], true);
+            int count = 1 + random_int(&seed, MOST_BLOCKS), lanes = count * SM_LANES;
+            real value[MOST_BLOCKS * SM_LANES];
+            Prefixes room[MOST_BLOCKS + 2 * PREFIX_AROUND(SM_MOST_W)] = {{{0}, {0}}};
+            real run[2][MOST_BLOCKS * STRIDE]; /* sums, unused, moments of each block */
+            for (int i = 0; i < lanes; i++) value[i] = (real)(random_int(&seed, 31) - 15);
+            for (int b = 0; b < count; b++) {
+                const real *from = value + b * SM_LANES;
+                vec none = lanes_set(0), here = lanes_load(from), moment = none;
+                vec before = b > 0 ? lanes_load(from - SM_LANES) : none;
+                vec after = b + 1 < count ? lanes_load(from + SM_LANES) : none;
+                lanes_store(run[0] + b * STRIDE, here);
+                lanes_store(run[1] + b * STRIDE, here);
+                if (w > SM_LANES) continue;
+                vec sum = window_sum_x(before, here, after, w, &moment);
+                for (int i = 0; i < SM_LANES; i++)
+                    check_along_x(value, lanes, w, b * SM_LANES + i, sum[i], moment[i]);
             }
-            const int here = BLOCKS / 2, first = here * SM_LANES;
-            if (w <= SM_LANES)
-                sum = window_sum_x(block[here - 1], block[here], block[here + 1], w, &moment);
-            vec prefix_sum = window_prefixes_x(prefix + here - PREFIX_BLOCKS(w) - 1, w,
-                                               PREFIX_BLOCKS(w), &prefix_moment);
-            for (int i = 0; i < SM_LANES; i++) {
-                real want = 0, want_moment = 0;
-                for (int a = -w; a <= w; a++) {
-                    want += value[first + i + a];
-                    want_moment += (real)a * value[first + i + a];
+            prefix_sums_far(room, w, run[0], count, STRIDE, MOMENT);
+            if (w <= SM_LANES) prefix_sums_near(w, run[1], count, STRIDE, MOMENT);
+            for (int way = 0; way < (w <= SM_LANES ? 2 : 1); way++)
+                for (int i = 0; i < lanes; i++) {
+                    const real *at = run[way] + i / SM_LANES * STRIDE + i % SM_LANES;
+                    check_along_x(value, lanes, w, i, at[0], at[MOMENT]);
                 }
-                assert_true(w > SM_LANES || (sum[i] == want && moment[i] == want_moment));
-                assert_true(prefix_sum[i] == want && prefix_moment[i] == want_moment);
-            }
         }
 }
