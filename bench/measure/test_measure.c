@@ -127,7 +127,7 @@ TEST(an_octree_is_valid_and_described)
         assert_true(row.bases >= 1 && row.bases <= row.particles);
         assert_true(row.width_edges == 1 && row.width_cells == 0);
         assert_true(row.summation_nodes >= 1 && row.summation_nodes <= (double)row.most_summation);
-        assert_true(fabs(row.fps * row.total_ms - 1000) < 1e-6);
+        assert_true(row.busy || fabs(row.fps * row.total_ms - 1000) < 1e-6);
         assert_true(row.goal_error <= (t ? 1e-10 : 5e-5));
         bench_row_free(&row);
     }
