@@ -8,6 +8,7 @@
 #include "step.h"
 #include "sums/blocks.h"
 #include "sums/box_sum_fixups.h"
+#include "sums/lists.h"
 #include "sums/sums.h"
 
 enum { SPARE_LISTS = 16 }; /* rows to spare in a layer, in sides: a few broken links' worth */
@@ -228,7 +229,7 @@ static bool add_copy(Lsm *lsm, const int *original, long p, int plane)
 /* Tiles of unique regions, each layer beginning a new tile; copies go to a list of their own. */
 static void build_tiles(Lsm *lsm, const int *original)
 {
-    long n = lsm->lattice.count, room = (n / SM_LANES + lsm->layers + 1) * SM_LANES, at = 0;
+    long n = lsm->lattice.count, room = n + (lsm->layers + 1) * MOMENTUM_WAYS, at = 0;
     lsm->tile_slot = sm_alloc((size_t)room, sizeof(int));
     lsm->layer_tile = sm_alloc((size_t)lsm->layers + 1, sizeof(long));
     lsm->copy = sm_alloc((size_t)(n - lsm->unique), sizeof *lsm->copy);
@@ -237,7 +238,7 @@ static void build_tiles(Lsm *lsm, const int *original)
     long p = 0;
     lsm->copies = 0;
     for (int l = 0; l < lsm->layers; l++) {
-        at = (at + SM_LANES - 1) / SM_LANES * SM_LANES;
+        at = lsm_layer_begin(at);
         lsm->layer_tile[l] = at / SM_LANES;
         lsm->layer_copy[l] = lsm->copies;
         for (; p < n && lsm->lattice.coord[p][2] < lsm->layer_plane[l + 1]; p++)

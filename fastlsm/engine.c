@@ -255,9 +255,9 @@ static int longest(const LsmLattice *l)
 
 /* How often momenta are kept: the more particles there are, the better their roundings cancel, and
  * the more it costs when they do not stay in the cache. */
-static int keep_steps(long blocks)
+static int keep_steps(long particles)
 {
-    return blocks <= 256 ? 4 : blocks <= 8192 ? 8 : 16;
+    return particles <= 4096 ? 4 : particles <= 131072 ? 8 : 16;
 }
 
 static void start_at_rest(SmEngine *e)
@@ -316,9 +316,8 @@ static SmCode engine_create(const SmVoxels *voxels, const SmEngineParams *params
     start_at_rest(e);
     e->contacts = lsm_contacts_build(lsm);
     bool abreast = e->bodies > 1;
-    long blocks = abreast ? (e->count + SM_LANES - 1) / SM_LANES : lsm->blocks; /* of one body */
-    e->momentum = momentum_build(abreast ? e->count : blocks, e->bodies, abreast,
-                                 keep_steps(blocks), lsm->threads);
+    e->momentum = momentum_build(abreast ? e->count : lsm->blocks, e->bodies, abreast,
+                                 keep_steps(e->count), lsm->threads);
     e->rounding = rounding_square(longest(&lsm->lattice), lsm->w);
     divide_momentum(e);
     sm_team_leave(team);
@@ -407,14 +406,18 @@ static void keep_momentum(SmEngine *e)
 /* The middle of each lane's body in whole cells, from blocks `first` to before `end`. */
 static void find_middles(const SmEngine *e, long first, long end, double middle[SM_LANES][3])
 {
-    vec sum[3] = {{0}};
+    const int vectors = e->bodies > 1 ? 1 : MOMENTUM_WAYS / SM_LANES;
+    vec sum[MOMENTUM_WAYS / SM_LANES][3] = {{{0}}};
     for (long block = first; block < end; block++)
-        for (int d = 0; d < 3; d++) sum[d] += lanes_load(e->lsm->x + (block * 3 + d) * SM_LANES);
+        for (int d = 0; d < 3; d++)
+            sum[(block - first) % vectors][d] += lanes_load(e->lsm->x + (block * 3 + d) * SM_LANES);
     for (int d = 0; d < 3; d++) {
         double all = 0;
-        for (int lane = 0; lane < SM_LANES; lane++) all += (double)sum[d][lane];
+        for (int way = 0; way < vectors * SM_LANES; way++)
+            all += (double)sum[way / SM_LANES][d][way % SM_LANES];
         for (int lane = 0; lane < SM_LANES; lane++)
-            middle[lane][d] = rint((e->bodies > 1 ? (double)sum[d][lane] : all) / (double)e->count);
+            middle[lane][d] =
+                rint((e->bodies > 1 ? (double)sum[0][d][lane] : all) / (double)e->count);
     }
 }
 

@@ -5,7 +5,9 @@
 #include "../../lib/simd/rigid_lanes.h"
 #include "../../lib/simd/rows.h"
 
-enum { LAYER_BLOCKS = 24 }; /* layers of about this size stay in the L2 cache */
+/* Layers of about this size stay in the L2 cache. What is alike within one is computed once, so
+ * they are the same whatever SM_LANES is. */
+enum { LAYER_PARTICLES = 384 };
 
 void lsm_lists_build_layers(Lsm *lsm)
 {
@@ -18,7 +20,7 @@ void lsm_lists_build_layers(Lsm *lsm)
     for (int z = 0; z < planes; z++) {
         held += count[z];
         bool high = z + 1 - lsm->layer_plane[lsm->layers] >= lsm->sums->layer_planes;
-        if ((held >= LAYER_BLOCKS * SM_LANES && high) || z == planes - 1) {
+        if ((held >= LAYER_PARTICLES && high) || z == planes - 1) {
             lsm->layer_plane[++lsm->layers] = z + 1;
             held = 0;
         }
@@ -41,7 +43,7 @@ void lsm_lists_lay_out(Lsm *lsm)
     lsm->slot = sm_alloc((size_t)n, sizeof(int));
     lsm->layer_block = sm_alloc((size_t)lsm->layers + 1, sizeof(long));
     for (int l = 0; l < lsm->layers; l++) {
-        slot = (slot + SM_LANES - 1) / SM_LANES * SM_LANES;
+        slot = lsm_layer_begin(slot);
         lsm->layer_block[l] = slot / SM_LANES;
         while (p < n && lsm->lattice.coord[p][2] < lsm->layer_plane[l + 1])
             lsm->slot[p++] = (int)slot++;

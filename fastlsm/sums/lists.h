@@ -3,6 +3,7 @@
 #ifndef LSM_LISTS_H
 #define LSM_LISTS_H
 
+#include "../../lib/simd/momentum.h"
 #include "sums.h"
 
 #define lsm_lists_build_layers   SM_NAME(lsm_lists_build_layers)
@@ -13,6 +14,13 @@
 #define lsm_lists_keep_down      SM_NAME(lsm_lists_keep_down)
 #define lsm_list_kernels         SM_NAME(lsm_list_kernels)
 #define lsm_list_kernels_regions SM_NAME(lsm_list_kernels_regions)
+
+/* The first slot of a layer that begins behind `slot` others: of a vector, of any set's, since
+ * momenta are summed by slots. */
+SM_INLINE long lsm_layer_begin(long slot)
+{
+    return (slot + MOMENTUM_WAYS - 1) / MOMENTUM_WAYS * MOMENTUM_WAYS;
+}
 
 /* Groups planes into layers of some hundred particles at least and finds how far a region reaches.
  */

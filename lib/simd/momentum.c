@@ -12,15 +12,16 @@
  * and m v^2. */
 enum { MASS_R, MASS_V = 3, MOMENT = 6, SPREAD = 9, ENERGY = 15, SUMS = MOMENTUM_SUMS };
 
-/* Runs are cut at RUN_BLOCKS blocks, over which sums are in `real`; RUNS_AT_ONCE are summed before
- * they are added up in double precision. Rounding is the same whatever the threads. */
-enum { RUN_BLOCKS = 32, RUNS_AT_ONCE = 64 };
+/* Of a vector for every SM_LANES ways; abreast each lane has its own body. Runs are cut after
+ * RUN_LENGTH terms of each way, which are summed in `real`; RUNS_AT_ONCE are summed before they are
+ * added up in double precision. Rounding is the same whatever the threads. */
+enum { VECTORS = MOMENTUM_WAYS / SM_LANES, RUN_LENGTH = 32, RUNS_AT_ONCE = 64 };
 
 /* What is over is expected to be over again: the share of it that the expectation gains each time,
  * and the share of the expectation that stays. */
 static const double LEARNT = 0.125, LASTING = 0.97;
 
-typedef real RunSum[SM_LANES][SUMS];
+typedef real RunSum[MOMENTUM_WAYS][SUMS];
 
 Momentum *momentum_build(long blocks, long bodies, bool abreast, int every, int threads)
 {
@@ -138,6 +139,7 @@ static void add_masses(Momentum *m)
 void momentum_divide(Momentum *m, long pieces)
 {
     Lane here[SM_LANES];
+    long most = (m->abreast ? 1 : VECTORS) * RUN_LENGTH;
     label_empty(m);
     m->pieces = pieces;
     if (m->bodies * pieces > m->piece_room) {
@@ -149,7 +151,7 @@ void momentum_divide(Momentum *m, long pieces)
     m->runs = 0;
     for (long block = 0; block < all_blocks(m); block++) {
         bool same = block > 0 && like_before(m, block);
-        if (!same || block - m->run[m->runs - 1].first == RUN_BLOCKS) {
+        if (!same || block - m->run[m->runs - 1].first == most) {
             lanes_of(m, block, here);
             m->run[m->runs++] = (MomentumRun){block, all_the_same(here) ? here[0].piece : -1};
         }
@@ -246,18 +248,20 @@ static void keep_run(const Momentum *m, const MomentumPiece *piece, const double
                      long run, real *x, real *v, RunSum total)
 {
     Frame frame;
-    vec sum[SUMS] = {{0}};
+    vec sum[VECTORS][SUMS] = {{{0}}};
     frame_of(m, piece, origin, run, &frame);
     for (long block = m->run[run].first; block < m->run[run + 1].first; block++) {
         vec mass = m->abreast ? lanes_set(m->mass[block % m->blocks])
                               : lanes_load(m->mass + block * SM_LANES);
-        keep_block(&frame, mass, x + block * 3 * SM_LANES, v + block * 3 * SM_LANES, sum);
+        keep_block(&frame, mass, x + block * 3 * SM_LANES, v + block * 3 * SM_LANES,
+                   sum[m->abreast ? 0 : block % VECTORS]);
     }
-    for (int part = 0; part < SUMS; part += SM_LANES) { /* to rows of lanes */
-        lanes_interleave(sum + part, SM_LANES);
-        for (int lane = 0; lane < SM_LANES; lane++)
-            lanes_store(total[lane] + part, sum[part + lane]);
-    }
+    for (int i = 0; i < VECTORS; i++)
+        for (int part = 0; part < SUMS; part += SM_LANES) { /* to rows of lanes */
+            lanes_interleave(sum[i] + part, SM_LANES);
+            for (int lane = 0; lane < SM_LANES; lane++)
+                lanes_store(total[i * SM_LANES + lane] + part, sum[i][part + lane]);
+        }
 }
 
 /* omega of J omega = L, J the inertia of a spread S. What lies within a tenth of a cell of a line,
@@ -327,10 +331,11 @@ static void add_run(const Momentum *m, long run, RunSum total, MomentumPiece *pi
     long same = m->run[run].piece;
     double all[SUMS] = {0};
     if (same < 0) lanes_of(m, m->run[run].first, of);
-    for (int lane = 0; lane < SM_LANES; lane++) {
-        if (same < 0 && of[lane].piece < 0) continue;
-        double *sum = same >= 0 ? all : piece[of[lane].piece].sum;
-        for (int i = 0; i < SUMS; i++) sum[i] += (double)total[lane][i];
+    for (int way = 0; way < MOMENTUM_WAYS; way++) {
+        const Lane *lane = of + way % SM_LANES;
+        if (same < 0 && lane->piece < 0) continue;
+        double *sum = same >= 0 ? all : piece[lane->piece].sum;
+        for (int i = 0; i < SUMS; i++) sum[i] += (double)total[way][i];
     }
     for (int i = 0; i < SUMS && same >= 0; i++) piece[same].sum[i] += all[i];
 }

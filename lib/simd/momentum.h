@@ -34,7 +34,9 @@
 #define momentum_bytes  SM_NAME(sm_momentum_bytes)
 #define momentum_free   SM_NAME(sm_momentum_free)
 
-enum { MOMENTUM_SUMS = 16 };
+/* Sums over slots go as many ways side by side whatever SM_LANES is, so that rounding does not
+ * depend on it. */
+enum { MOMENTUM_SUMS = 16, MOMENTUM_WAYS = 16 };
 
 /* One piece of one body. Places count from where the origins do (momentum_keep()). */
 typedef struct {

@@ -71,6 +71,8 @@ SM_INLINE void polar_trace(int tiles, const PolarInvariants *of, const unsigned 
     POLAR_EACH I2[t] = 2 * of[t].I;
     POLAR_EACH constant[t] = of[t].I * of[t].I - 4 * of[t].II;
     POLAR_EACH J8[t] = 8 * of[t].J;
+    ivec active[POLAR_TILES];
+    POLAR_EACH active[t] = (ivec)(lanes_set(0) == lanes_set(0));
     for (int step = 0; step < 16; step++) {
         unsigned more = 0;
         POLAR_EACH square[t] = trace[t] * trace[t];
@@ -78,7 +80,9 @@ SM_INLINE void polar_trace(int tiles, const PolarInvariants *of, const unsigned 
         POLAR_EACH slope[t] = 2 * trace[t] * (2 * square[t] - I2[t]) - J8[t];
         POLAR_EACH change[t] = slope[t] * slope[t] - f[t] * (6 * square[t] - I2[t]);
         POLAR_EACH change[t] = f[t] * slope[t] / lanes_max(change[t], lanes_set((real)1e-12));
+        POLAR_EACH change[t] = lanes_and(change[t], active[t]);
         POLAR_EACH trace[t] -= change[t];
+        POLAR_EACH active[t] &= enough * trace[t] < lanes_abs(change[t]);
         POLAR_EACH more |= lanes_below(enough * trace[t], lanes_abs(change[t])) & live[t];
         if (!more) break;
     }
