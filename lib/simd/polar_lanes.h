@@ -59,7 +59,8 @@ SM_INLINE void polar_invariants(const vec A[9], PolarInvariants *of)
 }
 
 /* tr U by Halley's iteration from above: (s1+s2+s3)^2 = I + 2 (s1 s2 + ..) <= I + 2 sqrt(3 II),
- * with equality where all stretches agree. Convergence is cubic, so a small change is the last one.
+ * with equality where all stretches agree. Convergence is cubic, so a small change is the last one:
+ * of each lane for itself, whatever the others of its group still need.
  * Quotients are divisions, which every processor rounds alike: approximate reciprocals differ
  * between makers, and gain at most 3% of a step. */
 SM_INLINE void polar_trace(int tiles, const PolarInvariants *of, const unsigned *live, vec *l)
