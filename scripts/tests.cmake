@@ -33,8 +33,8 @@ function(add_test_run name program isa)
 endfunction()
 
 # A test is test_<noun>.c beside its module. What is in the kernels' folders runs with each of their
-# instruction sets: <name>, the best that there is, and <name>_avx2. One that speaks of SM_REAL_BITS
-# is compiled in both precisions: <name> and <name>_f64, and for each set.
+# instruction sets: <name>_sse2, <name>_avx2 and so on, and <name> where there is but one. One that speaks
+# of SM_REAL_BITS is compiled in both precisions, <name> and <name>_f64, and for each set.
 function(add_unit_test source)
   get_filename_component(noun ${source} NAME_WE)
   file(RELATIVE_PATH folder ${CMAKE_SOURCE_DIR} ${source})

@@ -131,7 +131,7 @@ int lsm_blocks_at(const Lsm *lsm, int column, int y, int z)
 static void find_neighbours(const Lsm *lsm, Blocks *box, int z, BlockRun *run)
 {
     int none = (int)lsm->blocks, w = lsm->w;
-    run->moves_y = box->running && run->y % RESTART_ROW;
+    run->moves_y = box->running && run->y % RESTART;
     run->moves_z = box->running && z % RESTART;
     for (int i = 0; i < run->count; i++) {
         int column = run->column + i, *along = box->along_z + (run->first + i) * (long)lsm->side;

@@ -4,7 +4,7 @@
  * around a region's centre: first along z, then x, then y on the way up, and back in the order y,
  * x, z on the way down, so that all but the last stage happens within a plane, in rows that stay in
  * the L1 cache. From w = RUNNING on, sums along y and z are windows that move: O(1). They are
- * summed anew at every RESTART_ROW-th row and RESTART-th plane, or rounding would add up. Along x
+ * summed anew at every RESTART-th row and plane, or rounding would add up. Along x
  * lanes slide, and from w = FAR on prefixes are subtracted. Empty sites hold zero. A region whose
  * box sum is not its exact sum (a gap, a corner, a broken link within its box) is made so by
  * fix-ups (box_sum_fixups.h) or summed by its lists instead, lane by lane. */

@@ -16,7 +16,7 @@
 #define lsm_list_kernels_regions SM_NAME(lsm_list_kernels_regions)
 
 /* The first slot of a layer that begins behind `slot` others: of a vector, of any set's, since
- * momenta are summed by slots. */
+ * momenta are summed by slots. Tiles begin alike: in a body that can break tile t is block t. */
 SM_INLINE long lsm_layer_begin(long slot)
 {
     return (slot + MOMENTUM_WAYS - 1) / MOMENTUM_WAYS * MOMENTUM_WAYS;

@@ -186,16 +186,21 @@ static void check(SmEngineParams params, const LsmSums *form, int first_w, int m
 }
 
 /* The same, and one whose regions reach over several layers. */
-static void check_layers(SmEngineParams params, const LsmSums *form, int first_w)
+static void check_block(SmEngineParams params, const LsmSums *form, const int size[3], double fill)
 {
     unsigned seed = 8;
-    check(params, form, first_w, 14);
     Body body;
-    params.w = first_w > 2 ? first_w : 2;
-    random_block(&seed, (const int[3]){21, 19, 8}, 1, 0.95, &body.voxels);
+    random_block(&seed, size, 1, fill, &body.voxels);
     body_arrays(&body);
     check_body(&body, params, form, &seed);
     body_free(&body);
+}
+
+static void check_layers(SmEngineParams params, const LsmSums *form, int first_w)
+{
+    check(params, form, first_w, 14);
+    params.w = first_w > 2 ? first_w : 2;
+    check_block(params, form, (const int[3]){22, 20, 8}, 0.95); /* layers of one plane */
 }
 
 TEST(member_by_member)
@@ -225,6 +230,9 @@ TEST(over_boxes)
 {
     check_layers((SmEngineParams){.layout = SM_LAYOUT_BLOCKS}, &lsm_sums_boxes, 1);
     check_layers((SmEngineParams){.layout = SM_LAYOUT_BLOCKS}, &lsm_sums_boxes, 5);
+    for (int w = 3; w <= 5; w += 2) /* more rows than windows move on over */
+        check_block((SmEngineParams){.w = w, .layout = SM_LAYOUT_BLOCKS}, &lsm_sums_boxes,
+                    (const int[3]){47, 41, 5}, 0.999);
 }
 
 TEST(over_boxes_whose_regions_can_change)

@@ -35,7 +35,7 @@
 #define momentum_free   SM_NAME(sm_momentum_free)
 
 /* Sums over slots go as many ways side by side whatever SM_LANES is, so that rounding does not
- * depend on it. */
+ * depend on it where slots do not. In blocks of a lattice they do. */
 enum { MOMENTUM_SUMS = 16, MOMENTUM_WAYS = 16 };
 
 /* One piece of one body. Places count from where the origins do (momentum_keep()). */

@@ -73,7 +73,7 @@ SM_INLINE void polar_trace(int tiles, const PolarInvariants *of, const unsigned 
     POLAR_EACH constant[t] = of[t].I * of[t].I - 4 * of[t].II;
     POLAR_EACH J8[t] = 8 * of[t].J;
     ivec active[POLAR_TILES];
-    POLAR_EACH active[t] = (ivec)(lanes_set(0) == lanes_set(0));
+    POLAR_EACH active[t] = ~(ivec){0};
     for (int step = 0; step < 16; step++) {
         unsigned more = 0;
         POLAR_EACH square[t] = trace[t] * trace[t];
