@@ -220,6 +220,30 @@ TEST(test_rigid)
     }
 }
 
+/* A large block at rest stays where it is to the last bit, also where regions are wide: sums of
+ * many rows round no more than positions do. */
+TEST(test_large_at_rest)
+{
+    needs_figures();
+    Body body;
+    sm_voxels_block(&body.voxels, 53, 53, 53, 1.0 / 53);
+    body_arrays(&body);
+    memcpy(body.x, body.x0, (size_t)body.n * sizeof *body.x);
+    const int width[] = {1, 3, 4, 5, 8, 12};
+    for (size_t i = 0; i < sizeof width / sizeof width[0]; i++) {
+        SmEngineParams params = {.w = width[i], .h = 0.01, .layout = SM_LAYOUT_BLOCKS};
+        SmEngine *engine = create(&fastlsm_engine_f32, &body, params);
+        fastlsm_engine_f32.step(engine, NULL);
+        fastlsm_engine_f32.get(engine, SM_POSITION, body.a);
+        for (int step = 0; step < 30; step++) fastlsm_engine_f32.step(engine, NULL);
+        fastlsm_engine_f32.get(engine, SM_POSITION, body.b);
+        double moved = difference(&body, (const double(*)[3])body.a, (const double(*)[3])body.b);
+        if (!(moved == 0)) fail_msg("w %d: it moves by %g cells", width[i], moved);
+        fastlsm_engine_f32.destroy(engine);
+    }
+    body_free(&body);
+}
+
 /* Crushed flat, inverted, blown up, or all in one point: it comes back to rest, never a NaN. */
 TEST(test_recovery)
 {
