@@ -12,21 +12,6 @@
 #include "scene/body.h"
 #include "scene/memory.h"
 
-static void set_cells(BenchScene *scene, double w, double epsilon, bool cells)
-{
-    (void)epsilon, (void)cells;
-    scene->params.w = (int)w;
-}
-
-static void set_octree(BenchScene *scene, double w, double epsilon, bool cells)
-{
-    scene->params.summation = SM_SUM_FAST; /* it has only one way */
-    scene->params.polar = SM_POLAR_FAST;
-    scene->params.layout = SM_LAYOUT_AUTO;
-    scene->octree.width = cells ? (OctWidth){.cells = w} : (OctWidth){.edges = w};
-    scene->octree.epsilon = epsilon;
-}
-
 static long *octree_nodes(BenchScene *scene)
 {
     return &scene->octree.sampling.nodes;
@@ -39,7 +24,7 @@ static long *meshless_nodes(BenchScene *scene)
 
 const BenchEngine bench_fastlsm = {.type = {&fastlsm_engine_f32, &fastlsm_engine_f64},
                                    .yardstick = true,
-                                   .set_width = set_cells,
+                                   .set_width = bench_width_of_lattice,
                                    .carrier = &bench_lattice_carrier,
                                    .twin = &bench_lattice_twin,
                                    .checker = &bench_matching_checker,
@@ -49,7 +34,7 @@ const BenchEngine bench_octree = {.type = {&octree_engine_f32, &octree_engine_f6
                                   .sampled = true,
                                   .own = BENCH_OF_SAMPLED,
                                   .whose = "the octree's",
-                                  .set_width = set_octree,
+                                  .set_width = bench_width_of_octree,
                                   .nodes = octree_nodes,
                                   .adapt = bench_scene_sample,
                                   .carrier = &bench_octree_carrier,

@@ -106,9 +106,19 @@ static void bind(BenchRunner *runner, double t)
         bench_handle_pose(source, t, offset, runner->handle[i].pose);
         runner->bound[count++] = runner->handle[i];
     }
+    for (int i = 0; i < runner->grips; i++) runner->bound[count++] = runner->grip[i];
     runner->bound_count = count;
     SmBoundary boundary = bench_runner_boundary(runner);
     if (runner->type->bound) runner->type->bound(runner->engine, &boundary);
+}
+
+void bench_runner_grip(BenchRunner *runner, int count, const SmHandle *grip)
+{
+    runner->grips = count;
+    runner->grip = grip;
+    runner->bound =
+        sm_realloc(runner->bound, (size_t)(runner->held + count + 1), sizeof *runner->bound);
+    bind(runner, runner->time);
 }
 
 static SmCode nothing_selected(const BenchScene *scene, const char *what, int i, SmError *error)
@@ -331,7 +341,7 @@ void bench_runner_free(BenchRunner *runner)
 SmCode bench_runner_refresh(BenchRunner *runner, SmError *error)
 {
     free_particles(runner);
-    runner->held = 0;
+    runner->held = runner->grips = 0;
     find_particles(runner);
     SmCode code = make_handles(runner, error);
     if (!code) code = make_forces(runner, error);
@@ -390,7 +400,7 @@ void bench_runner_disturb(BenchRunner *runner, unsigned long seed)
 void bench_runner_prepare(BenchRunner *runner)
 {
     const BenchScene *scene = runner->scene;
-    bool moving = false;
+    bool moving = runner->grips > 0;
     for (int i = 0; i < scene->handle_count; i++) moving |= moves(&scene->handle[i]);
     if (moving) bind(runner, runner->time + scene->params.h);
     for (int i = 0; i < scene->force_count; i++) {

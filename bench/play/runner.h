@@ -17,6 +17,8 @@ typedef struct BenchRunner {
     SmHandle *handle;
     int *handle_source;    /* [held] the scene's handle */
     long *handle_instance; /* [held] */
+    int grips;             /* handles beside the scene's (bench_runner_grip()), */
+    const SmHandle *grip;  /* the caller's, kept */
     SmHandle *bound;       /* [bound_count] those that still hold, as handed to the engine */
     int bound_count;
     long *push_count; /* [scene->force_count] particles pushed, of all instances */
@@ -51,8 +53,12 @@ SmCode bench_runner_exact(const BenchScene *scene, const BenchBody *body, BenchR
 /* Sets the scene's initial deformation and velocities (bend, twist, squash, kick). */
 void bench_runner_disturb(BenchRunner *runner, unsigned long seed);
 
+/* Handles beside the scene's, which a user holds; kept. They are at their poses from the next step
+ * on, however the caller moves these. They must hold what no other does. */
+void bench_runner_grip(BenchRunner *runner, int count, const SmHandle *grip);
+
 /* After a change of the engine's particles (octree/engine.h): counts, rest positions, handles and
- * forces anew. A force keeps what it was in all, shared out by mass. O(particles). */
+ * forces anew, and no grips. A force keeps what it was in all, shared out by mass. O(particles). */
 SmCode bench_runner_refresh(BenchRunner *runner, SmError *error);
 
 /* What is bound to the engine now: handles that still hold, at their poses, and obstacles. Valid

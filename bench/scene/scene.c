@@ -293,3 +293,18 @@ void bench_width_text(const OctWidth *width, char text[BENCH_WIDTH_TEXT])
         snprintf(text + used, BENCH_WIDTH_TEXT - (size_t)used, "%.6g x the node's edge",
                  width->edges);
 }
+
+void bench_width_of_lattice(BenchScene *scene, double w, double epsilon, bool cells)
+{
+    (void)epsilon, (void)cells;
+    scene->params.w = (int)w;
+}
+
+void bench_width_of_octree(BenchScene *scene, double w, double epsilon, bool cells)
+{
+    scene->params.summation = SM_SUM_FAST; /* it has only one way */
+    scene->params.polar = SM_POLAR_FAST;
+    scene->params.layout = SM_LAYOUT_AUTO;
+    scene->octree.width = cells ? (OctWidth){.cells = w} : (OctWidth){.edges = w};
+    scene->octree.epsilon = epsilon;
+}

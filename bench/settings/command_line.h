@@ -5,6 +5,8 @@
 #ifndef BENCH_COMMAND_LINE_H
 #define BENCH_COMMAND_LINE_H
 
+#include <argp.h>
+
 #include "setting.h"
 
 /* Options that several commands have: the first member of every command's record. */

@@ -7,12 +7,13 @@
 #ifndef BENCH_SETTING_H
 #define BENCH_SETTING_H
 
-#include <argp.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
 
 #include "../../lib/error.h"
+
+struct argp_state; /* <argp.h> */
 
 typedef enum {
     BENCH_SET_INT,    /* int, */

@@ -1,0 +1,26 @@
+/* engine_list.c - the engines of the page, in single precision. */
+#include "../../fastlsm/fastlsm.h"
+#include "../../octree/engine.h"
+#include "../engines.h"
+#include "../play/body_group.h"
+#include "../scene/memory.h"
+#include "../scene/scene.h"
+
+static const BenchEngine lattice = {.type = {&fastlsm_engine_f32},
+                                    .set_width = bench_width_of_lattice,
+                                    .carrier = &bench_lattice_carrier,
+                                    .memory = bench_memory_lattice};
+static const BenchEngine sampled = {.type = {&octree_engine_f32},
+                                    .sampled = true,
+                                    .own = BENCH_OF_SAMPLED,
+                                    .whose = "the octree's",
+                                    .set_width = bench_width_of_octree,
+                                    .adapt = bench_scene_sample,
+                                    .carrier = &bench_octree_carrier,
+                                    .memory = bench_memory_octree};
+static const BenchEngine *const list[] = {&lattice, &sampled, NULL};
+
+__attribute__((constructor)) static void hand_over(void)
+{
+    bench_engine_list = list;
+}

@@ -1,0 +1,75 @@
+/* side.h - one of the two bodies that the page shows: a scene played by one engine, what of it is
+ * drawn, and what is held of it. */
+#ifndef BENCH_SIDE_H
+#define BENCH_SIDE_H
+
+#include "../play/playback.h"
+
+/* What is held: the material of one body around a place of it, on both sides. */
+typedef struct {
+    bool used;
+    long instance;
+    double rest[3], radius; /* of the body before its pose, mesh units */
+    double drag[3];         /* how far it has been moved since */
+} ViewGrip;
+
+enum { VIEW_GRIPS = 64 };
+
+/* What one group's engine holds for the grips. */
+typedef struct {
+    int count;
+    SmHandle handle[VIEW_GRIPS];
+    int grip[VIEW_GRIPS];        /* each handle's */
+    double start[VIEW_GRIPS][3]; /* of its pose's translation, before any drag */
+} ViewHeld;
+
+typedef struct {
+    BenchScene scene;
+    BenchPlayback play; /* group NULL: the side is not there, as `absent` says */
+    SmError absent;
+    ViewHeld *held;    /* [play.count] */
+    long steps, timed; /* in all, and since the laps were cleared */
+    double lap[SM_STAGES];
+    double build_seconds;
+
+    int generation; /* of vertices and triangles */
+    long vertices, triangles;
+    double (*place)[3], (*normal)[3]; /* [vertices] scratch */
+    float *point32, *normal32;        /* [vertices][3] */
+    int *index;                       /* [triangles][3] */
+} ViewSide;
+
+/* Plays the scene with `engine` on the body, as near to what it says as that engine can: what it
+ * does not do is left out (touches, creep, a strain limit). The scene is copied, the body kept.
+ * Where the engine refuses, the side is absent. */
+void view_side_create(const BenchScene *scene, const BenchBody *body, const char *engine,
+                      ViewSide *side);
+void view_side_free(ViewSide *side);
+
+bool view_side_is_there(const ViewSide *side);
+
+/* Positions, velocities and time of another side whose groups have as many particles. */
+void view_side_go_on(ViewSide *side, const ViewSide *from);
+
+/* Steps, with the scene's changes before those of each frame, and grips as they are. */
+void view_side_step(ViewSide *side, int steps, const ViewGrip *grip);
+
+/* Holds all grips in use, wherever each now is; after they have come or gone. */
+void view_side_hold(ViewSide *side, const ViewGrip *grip);
+
+/* The pose of a grip that was moved. */
+void view_side_drag(ViewSide *side, const ViewGrip *grip, int number);
+
+/* Where the middle of a grip's material is; false: this side does not hold it. */
+bool view_side_grip(const ViewSide *side, int number, double middle[3]);
+
+/* The body and the place at rest of a vertex that is drawn; false: there is none such. */
+bool view_side_vertex(const ViewSide *side, long vertex, long *instance, double rest[3]);
+
+/* Points and normals as they are now. */
+void view_side_draw(ViewSide *side);
+
+/* Kinetic energy and the length of the momentum. O(particles). */
+void view_side_motion(const ViewSide *side, double *energy, double *momentum);
+
+#endif

@@ -1,0 +1,154 @@
+/* What the page asks for, asked natively: both sides are the engines' own playback, and what is
+ * held by hand is where the hand is. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../lib/test_frame.h"
+#include "../engines.h"
+#include "side.h"
+#include "view.h"
+
+static int opened(const char *text, int keep)
+{
+    strcpy(view_room((int)strlen(text)), text);
+    return view_open((int)strlen(text), keep);
+}
+
+static void open_scene(const char *text)
+{
+    if (opened(text, 0)) fail_msg("%s", view_message());
+    for (int side = 0; side < VIEW_SIDES; side++)
+        if (*view_absent(side)) fail_msg("%d: %s", side, view_absent(side));
+}
+
+static const char block[] =
+    "mesh = \"shape:block\"; particles = 700; w = 2; damping = 0.3; octree = { levels = 1; };\n"
+    "handles = ( { box_low = [0.0, 0.0, 0.0]; box_high = [1.0, 0.2, 1.0]; } );\n";
+
+/* Where a side's first vertex is drawn. */
+static void vertex(int side, long number, double point[3])
+{
+    view_surface(side);
+    for (int d = 0; d < 3; d++) point[d] = view_points(side)[3 * number + d];
+}
+
+/* The surface after some frames is the one that `run` would store. */
+TEST(sides_play_the_scene)
+{
+    static const char *const names[] = {"penguin", "beam-cut", "liver"};
+    static const char *const engines[] = {"fastlsm", "octree"};
+    for (int n = 0; n < 3; n++) {
+        SmError error;
+        BenchScene scene;
+        BenchBody body;
+        if (bench_scene_find(names[n], &scene, &error)) fail_msg("%s", error.text);
+        if (bench_body_of_scene(&scene, NULL, &body, &error)) fail_msg("%s", error.text);
+        open_scene(view_scene_text(names[n]));
+        int side = !strcmp(scene.engine, engines[VIEW_OCTREE]);
+        const SmEngineType *type = bench_engine(scene.engine)->type[0];
+        BenchPlayback play;
+        if (bench_playback_create(&scene, &body, type, 1, 1, &play, &error))
+            fail_msg("%s", error.text);
+        enum { FRAMES = 110 }; /* the liver's cut is in them */
+        for (int frame = 0; frame < FRAMES; frame++) {
+            if (bench_playback_change(&play, &error)) fail_msg("%s", error.text);
+            for (int s = 0; s < scene.steps_per_frame; s++) {
+                bench_playback_prepare(&play);
+                bench_playback_advance(&play, NULL);
+            }
+        }
+        view_step(side, FRAMES * scene.steps_per_frame);
+        view_surface(side);
+        long vertices, triangles;
+        bench_playback_size(&play, &vertices, &triangles);
+        assert_int_equal(view_vertices(side), vertices);
+        assert_int_equal(view_triangles(side), triangles);
+        double(*point)[3] = sm_alloc((size_t)vertices, sizeof *point);
+        bench_playback_points(&play, point);
+        for (long i = 0; i < 3 * vertices; i++)
+            assert_true(view_points(side)[i] == (float)point[0][i]);
+        free(point);
+        bench_playback_free(&play);
+        bench_body_free(&body);
+    }
+}
+
+/* What is grabbed on one side follows the hand on both, and what is let go comes to rest. */
+TEST(a_hand_pulls_both_sides)
+{
+    open_scene(block);
+    double from[3], to[3], cell = view_figure(0, VIEW_CELL);
+    long top = 0; /* its highest vertex */
+    for (long v = 0; v < view_vertices(1); v++)
+        if (view_points(1)[3 * v + 1] > view_points(1)[3 * top + 1]) top = v;
+    vertex(1, top, from);
+    int grip = view_grab(1, (int)top, 2 * cell);
+    assert_true(grip >= 0);
+    view_drag(grip, 3 * cell, 0, -cell);
+    for (int side = 0; side < VIEW_SIDES; side++) {
+        double middle[3];
+        memcpy(middle, view_grip(side, grip), sizeof middle);
+        view_step(side, 50);
+        const double *now = view_grip(side, grip);
+        assert_true(fabs(now[0] - middle[0] - 3 * cell) < 0.01 * cell);
+        assert_true(fabs(now[1] - middle[1]) < 0.01 * cell);
+        assert_true(fabs(now[2] - middle[2] + cell) < 0.01 * cell);
+        vertex(side, top, to);
+        double short_of = fabs(to[0] - from[0] - 3 * cell); /* what carries it is held in part */
+        if (!(short_of < cell)) fail_msg("side %d: %g cells", side, short_of / cell);
+    }
+    view_release(grip);
+    for (int side = 0; side < VIEW_SIDES; side++) {
+        assert_null(view_grip(side, grip));
+        view_step(side, 2000);
+        vertex(side, top, to);
+        for (int d = 0; d < 3; d++)
+            if (!(fabs(to[d] - from[d]) < 0.02 * cell))
+                fail_msg("side %d is still %g cells from rest", side, (to[d] - from[d]) / cell);
+    }
+}
+
+/* Knobs: a scene that cannot be leaves all as it was; `keep` goes on where bodies are the same. */
+TEST(scenes_are_changed_live)
+{
+    char text[512];
+    open_scene(block);
+    int grip = view_grab(0, 3, 0);
+    view_drag(grip, 0, 0.1, 0);
+    view_step(0, 20);
+    view_step(1, 20);
+    double was[3], now[3];
+    vertex(0, 3, was);
+    assert_int_equal(opened("mesh = \"shape:block\"; w = 99;", 1), SM_INPUT);
+    assert_non_null(strstr(view_message(), "'w' must be"));
+    vertex(0, 3, now);
+    assert_memory_equal(was, now, sizeof was);
+    snprintf(text, sizeof text, "%sepsilon = 0.3; gravity = [0.0, -1.0, 0.0];", block);
+    assert_int_equal(opened(text, 1), 0);
+    vertex(0, 3, now);
+    for (int d = 0; d < 3; d++) assert_true(fabs(now[d] - was[d]) < 1e-6);
+    assert_non_null(view_grip(0, grip));
+    assert_true(view_figure(0, VIEW_STEPS) == 20);
+    view_step(0, 10); /* held, it stays there */
+    assert_true(view_grip(0, grip) && fabs(view_figure(0, VIEW_TIME) - 0.3) < 1e-9);
+    view_release(grip);
+}
+
+/* Numbers that no side, vertex or grip has do nothing. */
+TEST(wrong_numbers_do_nothing)
+{
+    open_scene(block);
+    view_step(5, 1);
+    view_step(-1, 1);
+    assert_int_equal(view_vertices(2), 0);
+    assert_int_equal(view_grab(0, 1 << 30, 1), -1);
+    assert_int_equal(view_grab(0, -1, 1), -1);
+    view_drag(-1, 1, 1, 1);
+    view_drag(64, 1, 1, 1);
+    view_release(3);
+    assert_true(isnan(view_figure(0, VIEW_FIGURES)) && isnan(view_figure(0, -1)));
+    assert_true(isnan(view_stage_ms(0, -1)) && isnan(view_stage_ms(0, SM_STAGES)));
+    assert_null(view_obstacle(0));
+}
+
+TEST_GROUP(NULL, NULL)

@@ -1,0 +1,319 @@
+#include "view.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../scene/builtin.h"
+#include "side.h"
+
+static struct {
+    char *text; /* the room for it */
+    char message[600];
+    BenchBody *body;
+    ViewSide *side[VIEW_SIDES];
+    ViewGrip grip[VIEW_GRIPS];
+    double bounds[6], middle[3], obstacle[8];
+} view;
+
+const char *view_scene_name(int number)
+{
+    for (int i = 0; i <= number; i++)
+        if (!bench_builtin[i].name) return NULL;
+    return bench_builtin[number].name;
+}
+
+const char *view_scene_text(const char *name)
+{
+    return bench_scene_text(name, NULL);
+}
+
+char *view_room(int bytes)
+{
+    free(view.text);
+    return view.text = sm_alloc((size_t)bytes + 1, 1);
+}
+
+const char *view_message(void)
+{
+    return view.message;
+}
+
+static int refuse(const SmError *error)
+{
+    snprintf(view.message, sizeof view.message, "%s", error->text);
+    return error->code;
+}
+
+/* Box of everything that is drawn of both sides now. */
+static void find_bounds(void)
+{
+    for (int d = 0; d < 3; d++) view.bounds[d] = INFINITY, view.bounds[3 + d] = -INFINITY;
+    for (int s = 0; s < VIEW_SIDES; s++)
+        for (long v = 0; v < view.side[s]->vertices; v++)
+            for (int d = 0; d < 3; d++) {
+                double x = view.side[s]->place[v][d];
+                view.bounds[d] = fmin(view.bounds[d], x);
+                view.bounds[3 + d] = fmax(view.bounds[3 + d], x);
+            }
+}
+
+static void close_sides(ViewSide *side[VIEW_SIDES], BenchBody *body)
+{
+    for (int s = 0; s < VIEW_SIDES; s++) {
+        if (side[s]) view_side_free(side[s]);
+        free(side[s]);
+    }
+    if (body) bench_body_free(body);
+    free(body);
+}
+
+/* Takes the place of what was open. */
+static void replace(ViewSide *side[VIEW_SIDES], BenchBody *body, bool keep)
+{
+    bool opened = view.body != NULL;
+    if (keep && opened)
+        for (int s = 0; s < VIEW_SIDES; s++) view_side_go_on(side[s], view.side[s]);
+    else
+        memset(view.grip, 0, sizeof view.grip);
+    close_sides(view.side, view.body);
+    memcpy(view.side, side, sizeof view.side);
+    view.body = body;
+    for (int s = 0; s < VIEW_SIDES; s++) {
+        view_side_hold(side[s], view.grip);
+        view_side_draw(side[s]);
+    }
+    if (!keep || !opened) find_bounds();
+}
+
+int view_open(int bytes, int keep)
+{
+    static const char *const engine[VIEW_SIDES] = {"fastlsm", "octree"};
+    static BenchScene scene;
+    SmError error;
+    if (bench_scene_parse(view.text, (size_t)bytes, "scene", &scene, &error)) return refuse(&error);
+    BenchBody *body = sm_alloc(1, sizeof *body);
+    ViewSide *side[VIEW_SIDES] = {NULL, NULL};
+    if (bench_body_of_scene(&scene, NULL, body, &error)) {
+        free(body);
+        return refuse(&error);
+    }
+    for (int s = 0; s < VIEW_SIDES; s++) {
+        side[s] = sm_alloc(1, sizeof *side[s]);
+        view_side_create(&scene, body, engine[s], side[s]);
+    }
+    if (!view_side_is_there(side[VIEW_LATTICE]) && !view_side_is_there(side[VIEW_OCTREE])) {
+        error = side[VIEW_LATTICE]->absent;
+        close_sides(side, body);
+        return refuse(&error);
+    }
+    view.message[0] = '\0';
+    replace(side, body, keep);
+    return 0;
+}
+
+/* The side of this number if it is there. */
+static ViewSide *side_of(int number)
+{
+    ViewSide *side = number >= 0 && number < VIEW_SIDES ? view.side[number] : NULL;
+    return side && view_side_is_there(side) ? side : NULL;
+}
+
+const char *view_absent(int side)
+{
+    if (side < 0 || side >= VIEW_SIDES || !view.side[side]) return "nothing is open";
+    return view.side[side]->absent.text;
+}
+
+void view_step(int side, int steps)
+{
+    if (side_of(side)) view_side_step(side_of(side), steps, view.grip);
+}
+
+/* What the engines count, of all groups. */
+static double counted(const ViewSide *side, int figure)
+{
+    double sum = 0, mean = 0;
+    for (int g = 0; g < side->play.count; g++) {
+        SmCounts counts;
+        const BenchRunner *runner = &side->play.group[g].runner;
+        runner->type->count(runner->engine, &counts);
+        long value[] = {[VIEW_PARTICLES] = counts.particles, [VIEW_REGIONS] = counts.regions,
+                        [VIEW_LINKS] = counts.links,         [VIEW_BROKEN] = counts.broken,
+                        [VIEW_CONTACTS] = counts.contacts,   [VIEW_SUMMATION_NODES] = 0,
+                        [VIEW_BYTES] = counts.bytes};
+        sum += (double)value[figure];
+        mean = counts.summation_nodes;
+    }
+    return figure == VIEW_SUMMATION_NODES ? mean : sum;
+}
+
+double view_figure(int number, int figure)
+{
+    const ViewSide *side = side_of(number);
+    double energy, momentum;
+    if (!side || figure < 0 || figure >= VIEW_FIGURES) return NAN;
+    switch (figure) {
+    case VIEW_BUILD_MS:
+        return 1e3 * side->build_seconds;
+    case VIEW_TIME:
+        return side->play.time;
+    case VIEW_STEPS:
+        return (double)side->steps;
+    case VIEW_KINETIC:
+        view_side_motion(side, &energy, &momentum);
+        return energy;
+    case VIEW_MOMENTUM:
+        view_side_motion(side, &energy, &momentum);
+        return momentum;
+    case VIEW_CELL:
+        return view.body->voxels.cell;
+    case VIEW_H:
+        return side->scene.params.h;
+    case VIEW_STEPS_PER_FRAME:
+        return side->scene.steps_per_frame;
+    default:
+        return counted(side, figure);
+    }
+}
+
+double view_stage_ms(int number, int stage)
+{
+    const ViewSide *side = side_of(number);
+    if (!side || stage < 0 || stage >= SM_STAGES || !side->timed) return NAN;
+    return 1e3 * side->lap[stage] / (double)side->timed;
+}
+
+int view_stage_steps(int side)
+{
+    return side_of(side) ? (int)side_of(side)->timed : 0;
+}
+
+void view_clear_stages(int number)
+{
+    ViewSide *side = side_of(number);
+    if (!side) return;
+    side->timed = 0;
+    memset(side->lap, 0, sizeof side->lap);
+}
+
+int view_surface(int side)
+{
+    if (!side_of(side)) return 0;
+    view_side_draw(side_of(side));
+    return side_of(side)->generation;
+}
+
+int view_vertices(int side)
+{
+    return side_of(side) ? (int)side_of(side)->vertices : 0;
+}
+
+int view_triangles(int side)
+{
+    return side_of(side) ? (int)side_of(side)->triangles : 0;
+}
+
+const float *view_points(int side)
+{
+    return side_of(side) ? side_of(side)->point32 : NULL;
+}
+
+const float *view_normals(int side)
+{
+    return side_of(side) ? side_of(side)->normal32 : NULL;
+}
+
+const int *view_indices(int side)
+{
+    return side_of(side) ? side_of(side)->index : NULL;
+}
+
+const double *view_bounds(void)
+{
+    return view.bounds;
+}
+
+/* The scene's; those of a side that is there. */
+static const BenchScene *scene_of_sides(void)
+{
+    for (int s = 0; s < VIEW_SIDES; s++)
+        if (side_of(s)) return &side_of(s)->scene;
+    return NULL;
+}
+
+int view_obstacles(void)
+{
+    const BenchScene *scene = scene_of_sides();
+    return scene ? scene->obstacle_count : 0;
+}
+
+const double *view_obstacle(int number)
+{
+    if (number < 0 || number >= view_obstacles()) return NULL;
+    const SmObstacle *obstacle = &scene_of_sides()->obstacle[number];
+    view.obstacle[0] = obstacle->kind;
+    memcpy(view.obstacle + 1, obstacle->a, sizeof obstacle->a);
+    memcpy(view.obstacle + 4, obstacle->b, sizeof obstacle->b);
+    view.obstacle[7] = obstacle->radius;
+    return view.obstacle;
+}
+
+/* ---- grips */
+
+static void hold_all(void)
+{
+    for (int s = 0; s < VIEW_SIDES; s++)
+        if (side_of(s)) view_side_hold(side_of(s), view.grip);
+}
+
+static bool is_held(int grip)
+{
+    double middle[3];
+    for (int s = 0; s < VIEW_SIDES; s++)
+        if (side_of(s) && view_side_grip(side_of(s), grip, middle)) return true;
+    return false;
+}
+
+int view_grab(int side, int vertex, double radius)
+{
+    int grip = 0;
+    while (grip < VIEW_GRIPS && view.grip[grip].used) grip++;
+    if (grip == VIEW_GRIPS || !side_of(side)) return -1;
+    ViewGrip taken = {.used = true, .radius = radius};
+    if (!view_side_vertex(side_of(side), vertex, &taken.instance, taken.rest)) return -1;
+    view.grip[grip] = taken;
+    hold_all();
+    if (is_held(grip)) return grip;
+    view.grip[grip].used = false;
+    return -1;
+}
+
+void view_drag(int grip, double x, double y, double z)
+{
+    if (grip < 0 || grip >= VIEW_GRIPS || !view.grip[grip].used) return;
+    memcpy(view.grip[grip].drag, (double[3]){x, y, z}, sizeof(double[3]));
+    for (int s = 0; s < VIEW_SIDES; s++)
+        if (side_of(s)) view_side_drag(side_of(s), &view.grip[grip], grip);
+}
+
+void view_release(int grip)
+{
+    if (grip < 0 || grip >= VIEW_GRIPS || !view.grip[grip].used) return;
+    view.grip[grip].used = false;
+    hold_all();
+}
+
+int view_grips(void)
+{
+    int last = VIEW_GRIPS;
+    while (last > 0 && !view.grip[last - 1].used) last--;
+    return last;
+}
+
+const double *view_grip(int side, int grip)
+{
+    bool held = side_of(side) && view_side_grip(side_of(side), grip, view.middle);
+    return held ? view.middle : NULL;
+}

@@ -1,0 +1,25 @@
+# The page's module: what bench/view exports, with all that plays a scene, for WebAssembly. Of bench/ it
+# takes no more than that, and of libraries libconfig's sources, whose folder SHAPEBENCH_VIEW names.
+
+file(STRINGS bench/view/view.h exports REGEX "view_[a-z_]+\\(")
+list(TRANSFORM exports REPLACE ".*[ *](view_[a-z_]+)\\(.*" "-Wl,--export=\\1")
+
+include(scripts/embed.cmake) # builtin.c
+set(libconfig grammar libconfig scanctx scanner strbuf)
+list(TRANSFORM libconfig REPLACE "(.+)" "${SHAPEBENCH_VIEW}/lib/\\1.c")
+set_source_files_properties(${libconfig} PROPERTIES COMPILE_OPTIONS -w)
+
+sources_of(view_sources bench/view/*.c)
+list(APPEND view_sources bench/engines.c lib/public/skin.c ${CMAKE_BINARY_DIR}/builtin.c)
+foreach(noun scene/scene scene/scene_settings scene/body scene/memory scene/nearest scene/blades
+    settings/setting settings/config_file system/suggest system/quote
+    play/runner play/body_group play/carrier play/playback)
+  list(APPEND view_sources bench/${noun}.c)
+endforeach()
+
+add_executable(view ${view_sources} ${libconfig})
+target_include_directories(view SYSTEM PRIVATE ${SHAPEBENCH_VIEW}/lib)
+target_compile_options(view PRIVATE -ffp-contract=off)
+target_link_libraries(view PRIVATE shapebench_flags shapebench_lib)
+target_link_options(view PRIVATE -mexec-model=reactor -Wl,-z,stack-size=8388608 ${exports})
+set_target_properties(view PROPERTIES SUFFIX .wasm)
