@@ -159,11 +159,12 @@ if(NOT SHAPEBENCH_SANITIZE AND NOT SHAPEBENCH_CORE)
   endforeach()
   add_script_test(by_isa by_isa.py $<TARGET_FILE:shapebench> hashes penguin hand-sampled)
   add_script_test(report report/test_report.py $<TARGET_FILE:shapebench>)
+  add_script_test(page view/test_page.py $<TARGET_FILE:shapebench>)
 endif()
 
 # These start first, of any instruction set and precision, so that none is alone in the end.
 set(long "bench_(calibrate|regress|kernels|sweep_run|points|gap|threads|command|experiment)|meshless_engine"
-  "fastlsm_(fastlsm|fracture)|octree_octree|lib_shape|render|brute_force|damage|writers|scenes|report|install")
+  "fastlsm_(fastlsm|fracture)|octree_octree|lib_shape|render|brute_force|damage|writers|scenes|report|install|page")
 list(JOIN long "|" long)
 get_property(tests DIRECTORY PROPERTY TESTS)
 foreach(test ${tests})

@@ -1,8 +1,8 @@
 # The page's module: what bench/view exports, with all that plays a scene, for WebAssembly. Of bench/ it
 # takes no more than that, and of libraries libconfig's sources, whose folder SHAPEBENCH_VIEW names.
 
-file(STRINGS bench/view/view.h exports REGEX "view_[a-z_]+\\(")
-list(TRANSFORM exports REPLACE ".*[ *](view_[a-z_]+)\\(.*" "-Wl,--export=\\1")
+file(STRINGS bench/view/view.h exports REGEX "^[a-z ]+[*]?view_[a-z_]+\\(")
+list(TRANSFORM exports REPLACE "^[a-z ]+[*]?(view_[a-z_]+)\\(.*" "-Wl,--export=\\1")
 
 include(scripts/embed.cmake) # builtin.c
 set(libconfig grammar libconfig scanctx scanner strbuf)

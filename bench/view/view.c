@@ -19,9 +19,15 @@ static struct {
 
 const char *view_scene_name(int number)
 {
-    for (int i = 0; i <= number; i++)
-        if (!bench_builtin[i].name) return NULL;
-    return bench_builtin[number].name;
+    static BenchScene scene;
+    static const char *name[BENCH_MAX];
+    static int count, seen;
+    for (; bench_builtin[seen].name && count < BENCH_MAX; seen++) {
+        const char *text = bench_builtin[seen].text; /* perhaps of an engine that is not here */
+        if (!bench_scene_parse(text, strlen(text), "scene", &scene, NULL))
+            name[count++] = bench_builtin[seen].name;
+    }
+    return number >= 0 && number < count ? name[number] : NULL;
 }
 
 const char *view_scene_text(const char *name)

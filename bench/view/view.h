@@ -9,7 +9,8 @@
 
 enum { VIEW_LATTICE, VIEW_OCTREE, VIEW_SIDES };
 
-/* Built-in scenes: names, number 0 and up, NULL past the last; and the text of a scene's file. */
+/* Built-in scenes that can be opened: names, number 0 and up, NULL past the last; and the text of a
+ * scene's file. */
 const char *view_scene_name(int number);
 const char *view_scene_text(const char *name);
 

@@ -1,0 +1,250 @@
+// app.js - the page's state: the scene's text, the engines and their pictures, and the frames.
+import { Camera } from 'view/camera';
+import { Picture, THEMES } from 'view/draw';
+import { SIDES } from 'view/engine';
+import { Hands } from 'view/hands';
+import { Meter } from 'view/meter';
+import { Panel } from 'view/panel';
+import { packScene, savePicture, unpackScene } from 'view/share';
+import { findStage } from 'view/shapes';
+
+const WORK_MS = 25; // of steps in a frame, at most
+const LEAST_FRAME_MS = 12; // faster screens do not make time run faster
+const SHOW_MS = 200; // between two looks at the figures
+const $ = (id) => document.getElementById(id);
+const nextPaint = () => new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
+
+export class App {
+    constructor(engine, shaders) {
+        this.engine = engine;
+        this.views = [$('view-0'), $('view-1')];
+        this.camera = new Camera();
+        this.picture = new Picture($('canvas'), shaders);
+        this.meters = [new Meter(), new Meter()];
+        this.panel = new Panel(this);
+        this.hands = new Hands(this);
+        this.playing = true;
+        Object.assign(this, { text: '', busy: false, stale: true, now: 0, last: 0, shown: 0, cost: 0 });
+    }
+
+    pinning() { return $('pin').getAttribute('aria-pressed') === 'true'; }
+    say(words) { $('status').textContent = words; }
+    changed() { this.stale = true; }
+
+    // Opens a scene's text; '' or why not, and then all is as before. `keep`: motion goes on.
+    async open(text, keep) {
+        this.busy = true;
+        this.say('Building …');
+        await nextPaint();
+        let refused;
+        try {
+            refused = this.engine.open(text, keep);
+        } catch (trap) {
+            refused = await this.recover(trap);
+        }
+        this.busy = false;
+        this.say('');
+        if (!refused) this.opened(text, keep);
+        return refused;
+    }
+
+    opened(text, keep) {
+        this.text = text;
+        const [bounds, obstacles] = [this.engine.bounds(), this.engine.obstacles()];
+        this.picture.setScene(bounds, obstacles);
+        this.stage = findStage(bounds, obstacles);
+        if (!keep) this.meters.forEach((meter) => meter.clear());
+        if (!keep) this.hands.forget();
+        this.meters.forEach((meter) => meter.begin());
+        this.cost = 0;
+        this.views.forEach((view, side) => {
+            this.engine.clearStages(side);
+            this.picture.setSurface(side, this.engine.surface(side));
+            view.querySelector('.absent').textContent = this.engine.absent(side);
+        });
+        this.panel.fill();
+        this.panel.show(this.meters);
+        this.changed();
+    }
+
+    // The engine has trapped: it begins anew with the scene that was open.
+    async recover(trap) {
+        await this.engine.restart();
+        if (this.text && !this.engine.open(this.text, false)) this.opened(this.text, false);
+        return `The engine stopped and has begun anew: ${trap.message}`;
+    }
+
+    // Opens another scene and looks at it, as open() does; the menu says which one is open now.
+    async visit(text) {
+        const refused = await this.open(text, false);
+        this.say(refused);
+        if (!refused) this.original = text;
+        if (!refused) this.frame();
+        const { engine } = this;
+        $('scene').value = engine.sceneNames().find((name) => engine.sceneText(name) === this.original) ?? '';
+        return refused;
+    }
+
+    frame() {
+        const { width, height } = this.views[0].getBoundingClientRect();
+        this.camera.frame(this.stage, width / height);
+        this.changed();
+    }
+
+    // Steps of one frame on both sides; the milliseconds that stepping took.
+    step(steps) {
+        this.now += 1 / 60;
+        let spent = 0;
+        for (const side of this.engine.present()) {
+            const begin = performance.now();
+            this.engine.step(side, steps);
+            const stepped = performance.now();
+            spent += stepped - begin;
+            this.picture.setSurface(side, this.engine.surface(side));
+            this.meters[side].add(steps, stepped - begin, performance.now() - begin);
+            const [kinetic, momentum] = ['kinetic', 'momentum'].map((name) => this.engine.figure(side, name));
+            this.meters[side].note(this.now, kinetic, momentum);
+        }
+        this.changed();
+        return spent;
+    }
+
+    // Figures, lines and bars up to now.
+    show(soon) {
+        for (const side of this.engine.present())
+            this.meters[side].settle(() => {
+                const stages = this.engine.stages(side);
+                this.engine.clearStages(side);
+                return stages;
+            }, soon);
+        this.panel.show(this.meters);
+    }
+
+    stepsPerFrame() { return this.engine.figure(this.engine.present()[0], 'stepsPerFrame') || 1; }
+
+    // As many steps as the scene wants, or as there is time for.
+    play() {
+        const wanted = this.stepsPerFrame();
+        const steps = this.cost ? Math.max(1, Math.min(wanted, Math.floor(WORK_MS / this.cost))) : 1;
+        const cost = this.step(steps) / steps;
+        this.cost = this.cost ? 0.7 * this.cost + 0.3 * cost : cost;
+    }
+
+    // Where the views are on the canvas, in its pixels from its lower left corner.
+    boxes() {
+        const whole = $('canvas').getBoundingClientRect();
+        const ratio = $('canvas').width / whole.width;
+        return this.views.map((view) => {
+            const box = view.getBoundingClientRect();
+            const [x, y] = [box.left - whole.left, whole.bottom - box.bottom];
+            const pixels = { x, y, width: box.width, height: box.height };
+            for (const key in pixels) pixels[key] = Math.round(pixels[key] * ratio);
+            return pixels;
+        });
+    }
+
+    draw() {
+        const canvas = $('canvas');
+        const ratio = Math.min(2, window.devicePixelRatio || 1);
+        const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((n) => Math.round(n * ratio));
+        if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
+        const theme = THEMES[document.documentElement.dataset.theme];
+        this.boxes().forEach((box, side) => {
+            this.picture.drawSide(side, box, this.camera, this.engine.grips(side), theme, ratio);
+        });
+        this.stale = false;
+    }
+
+    // One animation frame.
+    async tick(now) {
+        if (this.busy || now - this.last < LEAST_FRAME_MS) return;
+        this.last = now;
+        try {
+            if (this.playing) this.play();
+            if (this.stale) this.draw();
+            if (!this.playing || now - this.shown < SHOW_MS) return;
+            this.shown = now;
+            this.show(false);
+        } catch (trap) {
+            this.busy = true;
+            this.pause(true);
+            this.say(await this.recover(trap));
+            this.busy = false;
+        }
+    }
+
+    // Frames one after the other, each with all its steps, whatever time they take.
+    advance(frames = 1) {
+        this.pause(true);
+        for (let i = 0; i < frames; i++) this.step(this.stepsPerFrame());
+        this.draw();
+        this.show(true);
+    }
+
+    pause(paused = true) {
+        this.playing = !paused;
+        this.meters.forEach((meter) => meter.begin());
+        this.engine.present().forEach((side) => this.engine.clearStages(side));
+        $('pause').textContent = paused ? 'Play' : 'Pause';
+    }
+
+    async reset() { this.say(await this.open(this.text, false)); }
+
+    once() {
+        this.pause(true);
+        this.step(1);
+        this.panel.show(this.meters);
+    }
+
+    // What a key that is neither for the camera nor for pulling does; whether it does anything.
+    command(key) {
+        if (key === ' ') this.pause(this.playing);
+        else if (key === '.') this.once();
+        else if (key === 'r') this.reset();
+        else return false;
+        return true;
+    }
+
+    setTheme(dark) {
+        document.documentElement.dataset.theme = dark ? 'dark' : 'light';
+        $('theme').setAttribute('aria-pressed', dark);
+        this.changed();
+        if (this.text) this.panel.show(this.meters);
+    }
+
+    picturePNG() {
+        this.draw();
+        const time = (side) => `${SIDES[side]}, ${this.engine.figure(side, 'time').toFixed(2)} s`;
+        const ink = getComputedStyle(document.body).color;
+        savePicture($('canvas'), this.boxes(), [time(0), time(1)], ink);
+    }
+
+    async copyLink() {
+        this.fragment = `#${await packScene(this.text)}`;
+        location.hash = this.fragment;
+        try {
+            await navigator.clipboard.writeText(location.href);
+            this.say('Link copied.');
+        } catch {
+            this.say('The link is in the address bar.');
+        }
+    }
+
+    // Opens the scene that the address carries, unless it is the one that was copied from here.
+    async openLink() {
+        const text = location.hash !== this.fragment && await unpackScene(location.hash);
+        return Boolean(text) && !await this.visit(text);
+    }
+
+    // Where a vertex is in the canvas, in its pixels from its upper left corner.
+    project(side, vertex) {
+        const points = this.engine.surface(side).points;
+        const box = this.boxes()[side];
+        const point = [...points.subarray(3 * vertex, 3 * vertex + 3)];
+        const at = this.camera.project(point, box.width / box.height);
+        return {
+            x: box.x + (at.x + 1) / 2 * box.width,
+            y: $('canvas').height - box.y - (at.y + 1) / 2 * box.height,
+        };
+    }
+}

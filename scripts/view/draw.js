@@ -1,0 +1,211 @@
+// draw.js - draws both views with WebGL2: bodies, obstacles, ground with shadow, and what is held.
+import { add, cross, dot, unit } from 'view/camera';
+import { findGrounds, meshObstacles } from 'view/shapes';
+
+const MAP = 512; // pixels of a side's shadow map
+const POINT = 0, NORMAL = 1; // attributes, alike in all programs
+const rgb = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255);
+
+export const THEMES = {
+    light: { back: '#f4f5f7', floor: '#e9ebee', ink: '#8c939d', stone: '#b4b8be', darkness: 0.42,
+        sides: ['#0072b2', '#d55e00'] },
+    dark: { back: '#15181d', floor: '#20242b', ink: '#5b6370', stone: '#7d838c', darkness: 0.75,
+        sides: ['#3c97cf', '#e57a2a'] },
+};
+const HELD = rgb('#f0e442');
+
+function compile(gl, kind, text) {
+    const shader = gl.createShader(kind);
+    gl.shaderSource(shader, text);
+    gl.compileShader(shader);
+    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
+    return shader;
+}
+
+// A program, and where its uniforms are.
+function link(gl, vertex, fragment) {
+    const program = gl.createProgram();
+    gl.attachShader(program, compile(gl, gl.VERTEX_SHADER, vertex));
+    gl.attachShader(program, compile(gl, gl.FRAGMENT_SHADER, fragment));
+    gl.bindAttribLocation(program, POINT, 'point');
+    gl.bindAttribLocation(program, NORMAL, 'normal');
+    gl.linkProgram(program);
+    if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
+    const at = {};
+    for (let i = 0; i < gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS); i++) {
+        const { name } = gl.getActiveUniform(program, i);
+        at[name] = gl.getUniformLocation(program, name);
+    }
+    return { program, at };
+}
+
+// Buffers of one surface on the graphics card.
+class Mesh {
+    constructor(gl) {
+        this.gl = gl;
+        this.array = gl.createVertexArray();
+        [this.points, this.normals, this.indices] = [0, 1, 2].map(() => gl.createBuffer());
+        gl.bindVertexArray(this.array);
+        for (const [attribute, buffer] of [[POINT, this.points], [NORMAL, this.normals]]) {
+            gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+            gl.enableVertexAttribArray(attribute);
+            gl.vertexAttribPointer(attribute, 3, gl.FLOAT, false, 0, 0);
+        }
+        gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.indices);
+        gl.bindVertexArray(null);
+        this.count = 0;
+    }
+
+    set(surface) {
+        const { gl } = this;
+        gl.bindVertexArray(this.array);
+        for (const [buffer, values] of [[this.points, surface.points], [this.normals, surface.normals]]) {
+            gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+            gl.bufferData(gl.ARRAY_BUFFER, values, gl.DYNAMIC_DRAW);
+        }
+        if (surface.version === undefined || surface.version !== this.version)
+            gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, surface.indices, gl.DYNAMIC_DRAW);
+        gl.bindVertexArray(null);
+        this.version = surface.version;
+        this.count = surface.indices.length;
+    }
+
+    draw() {
+        if (!this.count) return;
+        this.gl.bindVertexArray(this.array);
+        this.gl.drawElements(this.gl.TRIANGLES, this.count, this.gl.UNSIGNED_INT, 0);
+    }
+}
+
+// A picture of one number a pixel, with smaller copies.
+function makeMap(gl) {
+    const texture = gl.createTexture();
+    gl.bindTexture(gl.TEXTURE_2D, texture);
+    gl.texStorage2D(gl.TEXTURE_2D, Math.log2(MAP) + 1, gl.R8, MAP, MAP);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
+    const frame = gl.createFramebuffer();
+    gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
+    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    return { texture, frame };
+}
+
+// 1, 2 or 5 times a power of ten, at most `most`.
+function roundDown(most) {
+    const power = 10 ** Math.floor(Math.log10(most));
+    return power * [5, 2, 1].find((digit) => digit * power <= most * 1.0001);
+}
+
+export class Picture {
+    constructor(canvas, shaders) {
+        const gl = canvas.getContext('webgl2', { alpha: false, antialias: true });
+        if (!gl) throw new Error('This browser has no WebGL2, which the page draws with.');
+        this.gl = gl;
+        this.canvas = canvas;
+        for (const name of ['surface', 'shadow', 'ground', 'dot'])
+            this[name] = link(gl, shaders[`${name}.vert`], shaders[`${name}.frag`]);
+        this.bodies = [new Mesh(gl), new Mesh(gl)];
+        this.maps = [makeMap(gl), makeMap(gl)];
+        this.stones = new Mesh(gl);
+        this.dots = new Mesh(gl);
+        this.grounds = [];
+    }
+
+    // The scene's obstacles, and the ground under what is within `bounds` at rest.
+    setScene(bounds, obstacles) {
+        this.stones.set(meshObstacles(obstacles));
+        for (const body of this.bodies) body.version = undefined; // numbers of another scene
+        const middle = add(bounds.low, bounds.high).map((x) => x / 2);
+        const reach = 0.5 * Math.hypot(...add(bounds.high, bounds.low, -1)) || 1;
+        this.grounds = findGrounds(bounds, obstacles).map(({ point, normal }) => {
+            const across = unit(cross(normal, Math.abs(normal[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0]));
+            const along = cross(across, normal);
+            const under = add(middle, normal, -dot(normal, add(middle, point, -1)));
+            return { middle: under, across, along, upward: normal, reach: 1.7 * reach, extent: 4.5 * reach,
+                spacing: roundDown(0.4 * reach) };
+        });
+    }
+
+    setSurface(side, surface) { this.bodies[side].set(surface); }
+
+    use({ program, at }, values) {
+        const { gl } = this;
+        gl.useProgram(program);
+        for (const [name, value] of Object.entries(values)) {
+            if (at[name] === undefined) continue;
+            if (value.length === 16) gl.uniformMatrix4fv(at[name], false, value);
+            else if (value.length === 3) gl.uniform3fv(at[name], value);
+            else gl.uniform1f(at[name], value);
+        }
+    }
+
+    drawShadow(side) {
+        const { gl } = this;
+        gl.bindFramebuffer(gl.FRAMEBUFFER, this.maps[side].frame);
+        gl.viewport(0, 0, MAP, MAP);
+        gl.clearColor(0, 0, 0, 1);
+        gl.clear(gl.COLOR_BUFFER_BIT);
+        gl.disable(gl.DEPTH_TEST);
+        gl.enable(gl.BLEND);
+        gl.blendEquation(gl.MAX);
+        this.use(this.shadow, this.grounds[0]);
+        this.bodies[side].draw();
+        gl.blendEquation(gl.FUNC_ADD);
+        gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+        gl.bindTexture(gl.TEXTURE_2D, this.maps[side].texture);
+        gl.generateMipmap(gl.TEXTURE_2D);
+    }
+
+    // Translucent, after all else: what is below the ground shows through it.
+    drawGrounds(side, view, theme) {
+        const { gl } = this;
+        gl.enable(gl.BLEND);
+        gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+        gl.depthMask(false);
+        gl.bindTexture(gl.TEXTURE_2D, this.maps[side].texture);
+        gl.bindVertexArray(null);
+        this.grounds.forEach((ground, i) => {
+            this.use(this.ground, { ...ground, view, ink: rgb(theme.ink), floorColour: rgb(theme.floor),
+                darkness: i ? 0 : theme.darkness });
+            gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
+        });
+        gl.depthMask(true);
+    }
+
+    drawDots(grips, view, size) {
+        const { gl } = this;
+        if (!grips.length) return;
+        const points = new Float32Array(grips.flatMap(({ point }) => point));
+        this.dots.set({ points, normals: points, indices: new Uint32Array(grips.keys()) });
+        gl.disable(gl.DEPTH_TEST);
+        this.use(this.dot, { view, size, colour: HELD });
+        gl.bindVertexArray(this.dots.array);
+        gl.drawArrays(gl.POINTS, 0, grips.length);
+    }
+
+    // One side into its part of the canvas: `box` in pixels from the lower left corner.
+    drawSide(side, box, camera, grips, theme, ratio) {
+        const { gl } = this;
+        this.drawShadow(side);
+        gl.viewport(box.x, box.y, box.width, box.height);
+        gl.scissor(box.x, box.y, box.width, box.height);
+        gl.enable(gl.SCISSOR_TEST);
+        gl.clearColor(...rgb(theme.back), 1);
+        gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+        gl.enable(gl.DEPTH_TEST);
+        gl.disable(gl.BLEND);
+        const view = camera.matrix(box.width / box.height);
+        const { right, up, back } = camera.axes();
+        const lamp = unit(add(add(back.map((x) => 0.7 * x), right, -0.45), up, 0.75));
+        const light = { view, eye: camera.eye(), lamp };
+        this.use(this.surface, { ...light, colour: rgb(theme.stone), gloss: 0.02 });
+        this.stones.draw();
+        this.use(this.surface, { ...light, colour: rgb(theme.sides[side]), gloss: 0.12 });
+        this.bodies[side].draw();
+        this.drawGrounds(side, view, theme);
+        this.drawDots(grips, view, 13 * ratio);
+        gl.disable(gl.SCISSOR_TEST);
+    }
+}

@@ -1,0 +1,155 @@
+// engine.js - the two engines in WebAssembly (bench/view/view.h): what they import, their strings,
+// and their numbers as arrays. A side is 0, FastLSM, or 1, the octree.
+
+export const SIDES = ['FastLSM', 'Octree'];
+export const STAGES = ['fast sum', 'shape matching', 'polar', 'damping', 'other'];
+const FIGURES = [
+    'particles', 'regions', 'links', 'broken', 'contacts', 'summationNodes', 'bytes', 'buildMs', 'time',
+    'steps', 'kinetic', 'momentum', 'cell', 'h', 'stepsPerFrame',
+];
+const OBSTACLES = ['plane', 'sphere', 'box', 'capsule'];
+const ENOSYS = 52;
+const EBADF = 8;
+
+// What the module imports of WASI: a clock and a place for messages; all else is not there.
+function makeSystem(memory) {
+    const view = () => new DataView(memory().buffer);
+    return {
+        clock_time_get(clock, precision, result) {
+            const nanoseconds = BigInt(Math.round(performance.now() * 1e6));
+            view().setBigUint64(result, nanoseconds, true);
+            return 0;
+        },
+        fd_write(file, list, count, written) {
+            let text = '';
+            let bytes = 0;
+            for (let i = 0; i < count; i++) {
+                const at = view().getUint32(list + 8 * i, true);
+                const length = view().getUint32(list + 8 * i + 4, true);
+                text += new TextDecoder().decode(new Uint8Array(memory().buffer, at, length));
+                bytes += length;
+            }
+            view().setUint32(written, bytes, true);
+            if (text.trim()) console.error(text.trimEnd());
+            return 0;
+        },
+        environ_sizes_get(count, size) {
+            view().setUint32(count, 0, true);
+            view().setUint32(size, 0, true);
+            return 0;
+        },
+        environ_get: () => 0,
+        fd_prestat_get: () => EBADF, // says that no folder is open; any other error ends the program
+        proc_exit(code) { throw new Error(`the engine ended with code ${code}`); },
+    };
+}
+
+export class Engine {
+    // Makes the engines of the module's bytes.
+    static async create(bytes) {
+        const engine = new Engine();
+        engine.module = await WebAssembly.compile(bytes);
+        await engine.restart();
+        return engine;
+    }
+
+    // Begins anew with nothing open: after a trap the old memory is not to be trusted.
+    async restart() {
+        const system = makeSystem(() => this.call.memory);
+        const imports = {};
+        for (const { module, name } of WebAssembly.Module.imports(this.module))
+            (imports[module] ??= {})[name] = system[name] ?? (() => ENOSYS);
+        this.call = (await WebAssembly.instantiate(this.module, imports)).exports;
+        this.held = new Set();
+        this.call._initialize?.();
+    }
+
+    string(at) {
+        const bytes = new Uint8Array(this.call.memory.buffer);
+        return at ? new TextDecoder().decode(bytes.subarray(at, bytes.indexOf(0, at))) : null;
+    }
+
+    // Puts text into the engine's room: where it is, and its bytes without the NUL after them.
+    give(text) {
+        const bytes = new TextEncoder().encode(`${text}\0`);
+        const at = this.call.view_room(bytes.length);
+        new Uint8Array(this.call.memory.buffer).set(bytes, at);
+        return { at, length: bytes.length - 1 };
+    }
+
+    sceneNames() {
+        const names = [];
+        for (let at; (at = this.call.view_scene_name(names.length));) names.push(this.string(at));
+        return names;
+    }
+
+    sceneText(name) { return this.string(this.call.view_scene_text(this.give(name).at)); }
+
+    // '', or the line that says why nothing has changed. With `keep` grips stay, too.
+    open(text, keep) {
+        if (this.call.view_open(this.give(text).length, keep ? 1 : 0))
+            return this.string(this.call.view_message());
+        if (!keep) this.held.clear();
+        return '';
+    }
+
+    absent(side) { return this.string(this.call.view_absent(side)); }
+    step(side, steps) { this.call.view_step(side, steps); }
+
+    // The sides that are there.
+    present() { return [0, 1].filter((side) => !this.absent(side)); }
+
+    figure(side, name) { return this.call.view_figure(side, FIGURES.indexOf(name)); }
+    stages(side) { return STAGES.map((name, stage) => this.call.view_stage_ms(side, stage)); }
+    clearStages(side) { this.call.view_clear_stages(side); }
+
+    // The surface now; its arrays hold until the next call.
+    surface(side) {
+        const version = this.call.view_surface(side);
+        const vertices = this.call.view_vertices(side);
+        const triangles = this.call.view_triangles(side);
+        const buffer = this.call.memory.buffer;
+        return {
+            version,
+            points: new Float32Array(buffer, this.call.view_points(side), 3 * vertices),
+            normals: new Float32Array(buffer, this.call.view_normals(side), 3 * vertices),
+            indices: new Uint32Array(buffer, this.call.view_indices(side), 3 * triangles),
+        };
+    }
+
+    doubles(at, count) { return [...new Float64Array(this.call.memory.buffer, at, count)]; }
+
+    bounds() {
+        const box = this.doubles(this.call.view_bounds(), 6);
+        return { low: box.slice(0, 3), high: box.slice(3) };
+    }
+
+    obstacles() {
+        return Array.from({ length: this.call.view_obstacles() }, (_, number) => {
+            const n = this.doubles(this.call.view_obstacle(number), 8);
+            return { kind: OBSTACLES[n[0]], a: n.slice(1, 4), b: n.slice(4, 7), radius: n[7] };
+        });
+    }
+
+    // The number of the grip on what is around a vertex, or -1.
+    grab(side, vertex, radius) {
+        const grip = this.call.view_grab(side, vertex, radius);
+        if (grip >= 0) this.held.add(grip);
+        return grip;
+    }
+
+    drag(grip, by) { this.call.view_drag(grip, by[0], by[1], by[2]); }
+
+    release(grip) {
+        this.call.view_release(grip);
+        this.held.delete(grip);
+    }
+
+    // Where the held grips are on a side: [{ grip, point }].
+    grips(side) {
+        return [...this.held].flatMap((grip) => {
+            const at = this.call.view_grip(side, grip);
+            return at ? [{ grip, point: this.doubles(at, 3) }] : [];
+        });
+    }
+}

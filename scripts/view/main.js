@@ -1,0 +1,58 @@
+// main.js - starts the page: engines, buttons, the first scene, the loop of frames, and what tests use.
+import { App } from 'view/app';
+import { Engine } from 'view/engine';
+import { fromBase64, saveFile, unzip } from 'view/share';
+
+const FIRST_SCENE = 'hand';
+const $ = (id) => document.getElementById(id);
+
+function wire(app) {
+    const names = app.engine.sceneNames();
+    $('scene').append(...['', ...names].map((name) => new Option(name || '(own text)', name, false)));
+    $('scene').options[0].disabled = true;
+    $('scene').addEventListener('change', () => app.visit(app.engine.sceneText($('scene').value)));
+    const does = {
+        pause: () => app.pause(app.playing), step: () => app.once(), reset: () => app.reset(),
+        look: () => app.frame(), pin: () => $('pin').setAttribute('aria-pressed', !app.pinning()),
+        unpin: () => app.hands.releaseAll(),
+        picture: () => app.picturePNG(), link: () => app.copyLink(),
+        file: () => saveFile('scene.cfg', new Blob([app.text], { type: 'text/plain' })),
+        theme: () => app.setTheme($('theme').getAttribute('aria-pressed') !== 'true'),
+        original: () => app.visit(app.original),
+    };
+    for (const [id, action] of Object.entries(does)) $(id).addEventListener('click', action);
+    const dark = matchMedia('(prefers-color-scheme: dark)');
+    dark.addEventListener('change', () => app.setTheme(dark.matches));
+    app.setTheme(dark.matches);
+    new ResizeObserver(() => app.changed()).observe($('canvas'));
+    window.addEventListener('hashchange', () => app.openLink());
+}
+
+async function start() {
+    const data = JSON.parse($('data').textContent);
+    const engine = await Engine.create(await unzip(fromBase64($('wasm').textContent), 'gzip'));
+    const app = new App(engine, data.shaders);
+    wire(app);
+    if (!await app.openLink()) await app.visit(data.scene || engine.sceneText(FIRST_SCENE));
+    const loop = (now) => { app.tick(now); requestAnimationFrame(loop); };
+    requestAnimationFrame(loop);
+    return app;
+}
+
+// What tests and films use; all but `ready` is there when that is done.
+window.shapebench = {
+    ready: start().then((app) => {
+        Object.assign(window.shapebench, {
+            engine: app.engine,
+            camera: app.camera,
+            advance: (frames) => app.advance(frames),
+            pause: () => app.pause(true),
+            text: () => app.text,
+            open: (text, keep) => (keep ? app.open(text, true) : app.visit(text)),
+            project: (side, vertex) => app.project(side, vertex),
+        });
+    }),
+};
+window.shapebench.ready.catch((error) => {
+    $('status').textContent = `The page cannot run here: ${error.message}`;
+});

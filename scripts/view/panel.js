@@ -1,0 +1,164 @@
+// panel.js - the knobs, each of which changes one setting of the scene's text, and the figures.
+import { STAGES } from 'view/engine';
+import {
+    asReal, getNumber, getNumbers, getSetting, getString, removeSetting, setSetting,
+} from 'view/scene_text';
+import { drawLines, setBar, short } from 'view/charts';
+
+const WAIT = 180; // ms after the last move of a knob
+const round2 = (value) => Number(value.toPrecision(2));
+
+// Sliders: `log` ones move by powers of ten. `get` and `set` where it is not the plain setting `key`.
+const SLIDERS = [
+    { key: 'w', label: 'w, half-width of regions', least: 1, most: 8, by: 1, whole: true, start: 2 },
+    { key: 'damping', label: 'Damping', least: 0, most: 1, by: 0.01, start: 0 },
+    { key: 'h', label: 'Time step h, s', least: 0.001, most: 0.03, log: true, start: 0.01 },
+    { key: 'particles', label: 'Particles wanted', least: 100, most: 60000, log: true, whole: true,
+        set: (text, value) => {
+            const without = removeSetting(removeSetting(text, 'cells'), 'cell');
+            return setSetting(without, 'particles', value);
+        } },
+    { key: 'gravity', label: 'Gravity in y', least: -19.62, most: 9.81, by: 0.981, start: 0,
+        choices: [0, -9.81],
+        get: (text) => getNumbers(text, 'gravity')?.[1],
+        set: (text, value) => {
+            const [x, , z] = getNumbers(text, 'gravity') ?? [0, 0, 0];
+            return setSetting(text, 'gravity', `[${asReal(x)}, ${value}, ${asReal(z)}]`);
+        } },
+    { key: 'epsilon', label: 'Octree: epsilon', least: 0, most: 2, by: 0.05, start: 0.5 },
+    { key: 'octree.levels', label: 'Octree: levels', least: 1, most: 6, by: 1, whole: true,
+        hint: 'not set: up to 4' },
+];
+const CHOICES = [
+    { key: 'summation', label: 'Summation', of: ['fast', 'bars', 'naive'] },
+    { key: 'polar', label: 'Polar', of: ['fast', 'jacobi'] },
+];
+const FIGURES = [
+    ['ms a step, in this browser', (m) => m.stepMs],
+    ['ms a frame: its steps, surface', (m) => m.frameMs],
+    ['Particles', 'particles'], ['Regions', 'regions'], ['Links', 'links', 0],
+    ['Summation nodes a region', 'summationNodes', 1], ['Contacts', 'contacts'],
+    ['Time simulated, s', 'time'], ['Kinetic energy, J', 'kinetic'], ['Momentum, kg·m/s', 'momentum'],
+];
+
+function make(tag, values, ...children) {
+    const element = Object.assign(document.createElement(tag), values);
+    element.append(...children);
+    return element;
+}
+
+class Knob {
+    constructor(panel, what, input, extra = []) {
+        Object.assign(this, { panel, what, input });
+        const id = `knob-${what.key.replace('.', '-')}`;
+        this.output = make('output', { htmlFor: id });
+        this.note = make('p', { className: 'note', id: `${id}-note` });
+        this.note.setAttribute('role', 'alert');
+        input.id = id;
+        input.setAttribute('aria-describedby', this.note.id);
+        const label = make('label', { htmlFor: id, textContent: what.label });
+        this.element = make('div', { className: 'knob' }, label, ...extra, this.output, input, this.note);
+        input.addEventListener('input', () => this.moved());
+    }
+
+    moved() {
+        this.output.textContent = this.value();
+        clearTimeout(this.timer);
+        this.timer = setTimeout(() => this.apply(), WAIT);
+    }
+
+    // Where the scene's text is refused, the knob goes back, and says why.
+    async apply() {
+        const { key, set = (text, value) => setSetting(text, key, value) } = this.what;
+        const refused = await this.panel.change(set(this.panel.text, this.value()));
+        this.note.textContent = this.note.title = refused;
+        this.fill(this.panel.text);
+    }
+}
+
+class Slider extends Knob {
+    constructor(panel, what) {
+        const [least, most] = [what.least, what.most].map((x) => (what.log ? Math.log10(x) : x));
+        const input = make('input', { type: 'range', min: least, max: most, step: what.by ?? 0.005 });
+        const buttons = (what.choices ?? []).map((value) => make('button', { textContent: value }));
+        super(panel, what, input, buttons);
+        buttons.forEach((button) => button.addEventListener('click', () => {
+            input.value = button.textContent;
+            this.apply();
+        }));
+    }
+
+    value() {
+        const { log, whole } = this.what;
+        const value = log ? round2(10 ** this.input.value) : Number(this.input.value);
+        return whole ? String(Math.round(value)) : asReal(value);
+    }
+
+    fill(text) {
+        const { get = (all) => getNumber(all, this.what.key), start, log, hint } = this.what;
+        const given = get(text);
+        const value = given ?? start ?? (hint ? 4 : this.panel.particles());
+        this.input.value = log ? Math.log10(value) : value;
+        this.output.textContent = given === undefined && hint ? hint : short(value);
+        this.input.setAttribute('aria-valuetext', this.output.textContent);
+    }
+}
+
+class Choice extends Knob {
+    constructor(panel, what) {
+        super(panel, what, make('select', {}, ...what.of.map((value) => new Option(value))));
+        this.output.remove();
+    }
+
+    value() { return `"${this.input.value}"`; }
+    fill(text) { this.input.value = getString(text, this.what.key) ?? this.what.of[0]; }
+}
+
+export class Panel {
+    // `app.open(text, keep)` resolves to '' or to why the text is refused.
+    constructor(app) {
+        this.app = app;
+        const choices = CHOICES.map((what) => new Choice(this, what));
+        this.knobs = [...SLIDERS.map((what) => new Slider(this, what)), ...choices];
+        document.getElementById('knobs').append(...this.knobs.map((knob) => knob.element));
+        this.rows = FIGURES.map(([label]) => this.row('figures', label));
+        this.bars = STAGES.map((name) => this.row('stages', name));
+        this.box = document.getElementById('text');
+        this.refusal = document.getElementById('refusal');
+        document.getElementById('apply').addEventListener('click', async () => {
+            this.refusal.textContent = await this.change(this.box.value);
+        });
+    }
+
+    get text() { return this.app.text; }
+    change(text) { return this.app.open(text, true); }
+    particles() { return this.app.engine.figure(this.app.engine.present()[0], 'particles'); }
+
+    row(table, label) {
+        const cells = [make('td'), make('td')];
+        const head = make('th', { scope: 'row', textContent: label });
+        document.querySelector(`#${table} tbody`).append(make('tr', {}, head, ...cells));
+        return cells;
+    }
+
+    // Shows what the text says.
+    fill() {
+        for (const knob of this.knobs) knob.fill(this.text);
+        if (document.activeElement !== this.box) this.box.value = this.text;
+        this.refusal.textContent = '';
+        const title = getString(this.text, 'title') ?? getSetting(this.text, 'mesh');
+        document.getElementById('title').textContent = title;
+    }
+
+    // The figures now, and the lines up to now.
+    show(meters) {
+        FIGURES.forEach(([, what, only], row) => meters.forEach((meter, side) => {
+            const value = typeof what === 'string' ? this.app.engine.figure(side, what) : what(meter);
+            this.rows[row][side].textContent = only === undefined || only === side ? short(value) : '–';
+        }));
+        this.bars.forEach((cells, stage) => meters.forEach((meter, side) => {
+            setBar(cells[side], meter.shares[stage]);
+        }));
+        for (const key of ['kinetic', 'momentum']) drawLines(document.getElementById(key), meters, key);
+    }
+}

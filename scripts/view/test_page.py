@@ -1,0 +1,257 @@
+#!/usr/bin/python3
+"""The page in a real browser, without a screen: opens every scene, looks at what is drawn, pulls, turns
+knobs, and holds the steps of the engines in it to those of the program.
+
+usage: test_page.py PROGRAM     exit code 77: there is no browser, nothing to drive it with, or no page
+"""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+try:
+    import h5py
+    import numpy
+    from selenium import webdriver
+    from selenium.webdriver.chrome.service import Service
+    from selenium.webdriver.common.action_chains import ActionChains
+except ImportError as missing:
+    print(f"skipped: no {missing.name}: install python3-selenium")
+    sys.exit(77)
+
+PROGRAM = pathlib.Path(sys.argv[1]).resolve()
+CHROMIUM, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
+for needed, package in ((CHROMIUM, "chromium"), (DRIVER, "chromium-driver"), (shutil.which("wasm-ld"), "lld"),
+                        (shutil.which("llvm-ar"), "llvm"), (shutil.which("clang"), "clang")):
+    if not needed:
+        print(f"skipped: install {package}")
+        sys.exit(77)
+HERE = pathlib.Path(__file__).resolve().parent
+SIDES = ("fastlsm", "octree")
+SCENES = ("hand-lattice", "hand-sampled", "penguin", "infant-bones", "liver", "flowers", "beam", "statue-shell",
+          "penguins-collide")
+
+
+def browser(width=1000, height=640):
+    options = webdriver.ChromeOptions()
+    options.binary_location = CHROMIUM
+    for argument in ("--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--hide-scrollbars",
+                     "--enable-unsafe-swiftshader", f"--window-size={width},{height}"):
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    driver = webdriver.Chrome(service=Service(DRIVER), options=options)
+    driver.set_script_timeout(120)
+    return driver
+
+
+class Page(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        page = pathlib.Path(cls.folder.name) / "page.html"
+        made = subprocess.run([HERE / "view", "hand", "-o", page], stdin=subprocess.DEVNULL)
+        if made.returncode == 3:
+            raise unittest.SkipTest("what the page is built with is not here")
+        made.check_returncode()
+        cls.driver = browser()
+        cls.driver.get(page.as_uri())
+        cls.ask("await shapebench.ready; shapebench.pause()")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.driver.quit()
+        cls.folder.cleanup()
+
+    @classmethod
+    def ask(cls, body, *values):
+        """What the body of an asynchronous function returns, in the page."""
+        answer = cls.driver.execute_async_script(
+            "const done = arguments[arguments.length - 1], values = [...arguments].slice(0, -1);"
+            f"(async () => {{ {body} }})().then((value) => done({{ value }}), "
+            "(error) => done({ error: String(error.stack || error) }))", *values)
+        if "error" in answer:
+            raise AssertionError(answer["error"])
+        return answer.get("value")
+
+    def open(self, name):
+        refused = self.ask("const e = shapebench.engine; const no = await shapebench.open("
+                           "e.sceneText(values[0]), false); shapebench.pause(); return no", name)
+        self.assertFalse(refused, f"{name}: {refused}")
+        self.driver.find_element("id", "look").click()  # all of it in the picture
+
+    def points(self, side):
+        flat = self.ask("return Array.from(shapebench.engine.surface(values[0]).points)", side)
+        return numpy.array(flat).reshape(-1, 3)
+
+    def figure(self, side, name):
+        return self.ask("return shapebench.engine.figure(values[0], values[1])", side, name)
+
+    def tearDown(self):
+        self.assertEqual(self.driver.get_log("browser"), [], "messages on the console")
+
+    def test_scenes_draw(self):
+        """Where a vertex of the surface is projected, the picture has the body's colour."""
+        self.assertLessEqual(set(SCENES), set(self.ask("return shapebench.engine.sceneNames()")))
+        for name in SCENES:
+            with self.subTest(name):
+                self.open(name)
+                drawn = self.ask(LOOK)
+                self.assertGreaterEqual(len(drawn), 1)
+                for side, (seen, hit) in drawn.items():
+                    self.assertGreater(seen, 250, f"{name}, {SIDES[int(side)]}: out of the picture")
+                    hidden = 0.5 if name == "penguins-collide" else 0.01  # by icicles
+                    self.assertGreaterEqual(hit, (1 - hidden) * seen, f"{name}, {SIDES[int(side)]}")
+
+    def test_steps_are_the_programs(self):
+        """A hundred steps and more of a scene's own engine, surface against surface, in cells."""
+        for name, frames in (("penguin", 25), ("beam", 7), ("hand-sampled", 50), ("liver-drop", 25)):
+            with self.subTest(name), tempfile.TemporaryDirectory() as folder:
+                path = os.path.join(folder, "out.vtkhdf")
+                subprocess.run([PROGRAM, "run", name, "--frames", str(frames), "-o", path], check=True,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                with h5py.File(path) as file:
+                    stored = file["VTKHDF/Points"][()]
+                    stored = stored[file["VTKHDF/Steps/PointOffsets"][-1]:]
+                self.open(name)
+                self.ask("shapebench.advance(values[0])", frames)
+                side = 1 if name == "hand-sampled" else 0
+                away = numpy.abs(self.points(side) - stored).max() / self.figure(side, "cell")
+                self.assertLess(away, 2e-3, f"{name}: {away} cells")
+                print(f"{name}: {frames} frames, at most {away:.2g} cells from the program's", flush=True)
+
+    def test_a_drag_moves_both(self):
+        """What is dragged is where the pointer is, on both sides: a fingertip, and the top of a block, which
+        comes back to rest (the hand swings for minutes)."""
+        hand = self.ask("return shapebench.engine.sceneText('hand').replace('bend = 0.7', 'bend = 0.0')")
+        for text, returns in ((hand, False), (BLOCK, True)):
+            self.assertFalse(self.ask("return shapebench.open(values[0], false)", text))
+            before = [self.points(side) for side in (0, 1)]
+            for side in (0, 1):
+                self.drag(side, before)
+                if not returns:
+                    continue
+                self.ask("shapebench.advance(2000)")
+                for s in (0, 1):
+                    self.assertLess(self.away(s, before), 0.05, f"{SIDES[s]} has not come back")
+
+    def drag(self, side, before):
+        """Pulls the highest vertex of a side by the mouse, and lets it go."""
+        self.ask("shapebench.pause()")
+        top = int(before[side][:, 1].argmax())
+        at = self.ask(WHERE, side, top)
+        self.pull({"x": at["x"], "y": at["y"] + 6}, (40, 30))  # not on its outline
+        self.ask("shapebench.advance(10)")
+        now = self.ask(WHERE, side, top)
+        self.assertLess(abs(now["x"] - at["x"] - 40) + abs(now["y"] - at["y"] - 30), 15, SIDES[side])
+        moved = [self.away(s, before) for s in (0, 1)]
+        self.assertGreater(moved[1 - side], 0.5 * moved[side], "the other side stays behind")
+        ActionChains(self.driver).release().perform()
+
+    def away(self, side, before):
+        """How far a vertex is from where it was, at most, in cells."""
+        return numpy.abs(self.points(side) - before[side]).max() / self.figure(side, "cell")
+
+    def pull(self, at, by):
+        """Presses at a place of the window and moves, without letting go."""
+        chain = ActionChains(self.driver, duration=50)
+        chain.w3c_actions.pointer_action.move_to_location(round(at["x"]), round(at["y"]))
+        chain.w3c_actions.pointer_action.pointer_down()
+        chain.w3c_actions.pointer_action.move_to_location(round(at["x"]) + by[0], round(at["y"]) + by[1])
+        chain.perform()
+
+    def test_random_gestures_stay_finite(self):
+        """Grabs and throws at random, faster than any hand."""
+        self.open("penguin")
+        finite = self.ask(GESTURES, 10000)
+        self.assertTrue(finite)
+
+    def test_a_setting_is_changed_in_its_text(self):
+        """Knobs change the scene's text: its line alone, not what looks like it in comments and strings."""
+        cases = (("w = 2;", "w", "3", "w = 3;"),
+                 ("# w = 7;\nt = \"w = 8; {\"; /* w = 1; */ w : 2", "w", "3",
+                  "# w = 7;\nt = \"w = 8; {\"; /* w = 1; */ w : 3"),
+                 ("handles = ( { w = 5; } );\n", "w", "3", "handles = ( { w = 5; } );\nw = 3;\n"),
+                 ("octree = {\n    nodes = 9;\n};", "octree.levels", "4",
+                  "octree = {\n    levels = 4;\n    nodes = 9;\n};"),
+                 ("w = 1;\n", "octree.levels", "4", "w = 1;\noctree = { levels = 4; };\n"),
+                 ("damping = 0.5", "h", "0.01", "damping = 0.5\nh = 0.01;\n"))
+        for text, path, value, wanted in cases:
+            self.assertEqual(self.ask(SET, text, path, value), wanted)
+            self.assertEqual(self.ask(GET, wanted, path), float(value))
+        whole = self.ask("return shapebench.engine.sceneText('liver')")
+        self.ask("const m = await import('view/scene_text'); for (let end = 0; end <= values[0].length; end++) "
+                 "m.getNumber(m.setSetting(values[0].slice(0, end), 'w', 4), 'w')", whole)  # it ends
+
+    def turn(self, name, value):
+        """Sets what the scene file says, as its knob does."""
+        text = self.ask("return shapebench.text()")
+        changed = re.sub(rf"^{name} = .*;", f"{name} = {value};", text, flags=re.MULTILINE)
+        self.assertFalse(self.ask("return shapebench.open(values[0], true)", changed))
+
+    def test_settings_change_what_they_should(self):
+        self.open("hand")
+        particles = self.figure(0, "particles")
+        self.turn("particles", "1500")
+        self.assertLess(self.figure(0, "particles"), 0.5 * particles)
+        refused = self.ask("return shapebench.open(shapebench.text().replace('w = 2', 'w = 99'), true)")
+        self.assertIn("'w' must be", refused)
+
+BLOCK = """
+mesh = "shape:block"; particles = 700; w = 2; damping = 0.3; octree = { levels = 1; };
+handles = ( { box_low = [0.0, 0.0, 0.0]; box_high = [1.0, 0.2, 1.0]; } );
+"""
+SET = "return (await import('view/scene_text')).setSetting(...values)"
+GET = "return (await import('view/scene_text')).getNumber(...values)"
+
+# Each side's share of 300 vertices that are drawn in its colour, within a pixel, of those in its view.
+LOOK = """
+const canvas = document.getElementById('canvas'), gl = canvas.getContext('webgl2');
+const shares = {}, pixel = new Uint8Array(36), whole = canvas.getBoundingClientRect();
+shapebench.advance(1);
+for (const side of shapebench.engine.present()) {
+    const box = document.getElementById(`view-${side}`).getBoundingClientRect();
+    const scale = canvas.width / whole.width, count = shapebench.engine.surface(side).points.length / 3;
+    let seen = 0, hit = 0;
+    for (let i = 0; i < 300; i++) {
+        const at = shapebench.project(side, Math.floor(i * count / 300));
+        const x = at.x - (box.left - whole.left) * scale, y = at.y - (box.top - whole.top) * scale;
+        if (!(x > 2 && y > 2 && x < box.width * scale - 2 && y < box.height * scale - 2)) continue;
+        gl.readPixels(Math.round(at.x) - 1, Math.round(canvas.height - at.y) - 1, 3, 3, gl.RGBA,
+            gl.UNSIGNED_BYTE, pixel);
+        seen++;
+        hit += [...Array(9).keys()].some((n) => Math.abs(pixel[4 * n] - pixel[4 * n + 2]) > 40);
+    }
+    shares[side] = [seen, hit];
+}
+return shares;
+"""
+
+# Where a vertex is in the window.
+WHERE = """
+const at = shapebench.project(values[0], values[1]);
+const canvas = document.getElementById('canvas'), box = canvas.getBoundingClientRect();
+return { x: box.left + at.x * box.width / canvas.width, y: box.top + at.y * box.height / canvas.height };
+"""
+
+GESTURES = """
+const e = shapebench.engine, held = [];
+let seed = 1;
+const random = () => (seed = (seed * 48271) % 2147483647) / 2147483647;
+for (let i = 0; i < values[0]; i++) {
+    const side = i % 2, count = e.surface(side).points.length / 3;
+    if (held.length < 3) held.push(e.grab(side, Math.floor(random() * count), random()));
+    e.drag(held[held.length - 1], [0, 1, 2].map(() => 20 * (random() - 0.5)));
+    e.step(side, 1);
+    if (random() < 0.3) e.release(held.shift());
+}
+held.forEach((grip) => e.release(grip));
+return [0, 1].every((side) => e.surface(side).points.every(Number.isFinite));
+"""
+
+if __name__ == "__main__":
+    ran = unittest.main(argv=sys.argv[:1], exit=False).result
+    sys.exit(77 if ran.skipped and ran.wasSuccessful() else not ran.wasSuccessful())
