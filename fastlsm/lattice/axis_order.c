@@ -78,16 +78,25 @@ static double best_fill(const SmVoxels *v, int lanes, int *turn)
     return best;
 }
 
+static bool is_box(const SmVoxels *v)
+{
+    return v->cell_count == (long)v->size[0] * v->size[1] * v->size[2];
+}
+
 /* The fill from which blocks are faster than lists, as measured (shapebench kernels shows both): in
  * a box no sum needs a fix-up; a large body's lists are beyond the L2 cache, and at w = 1 block
- * form needs few fixups. */
-static double fill_worth(const SmVoxels *v, const SmEngineParams *params)
+ * form needs few fixups, which four lanes do not make up for. */
+static double fill_worth(const SmVoxels *v, const SmEngineParams *params, int lanes)
 {
     const long large = 30000;
-    bool lists_are_slow = v->particle_count >= large && params->w == 1;
-    if (v->cell_count == (long)v->size[0] * v->size[1] * v->size[2]) return 0.5;
+    bool lists_are_slow = v->particle_count >= large && params->w == 1 && lanes > 4;
+    if (is_box(v)) return 0.5;
     return lists_are_slow && !(params->strain_limit > 0) ? 0.6 : 0.85;
 }
+
+/* How filled groups of 16 cells are says how many regions need fix-ups, which cost most: however
+ * many lanes there are. A box needs none, and what counts is how full its lanes are. */
+enum { GROUP = 16 };
 
 SmLayout lsm_axes_choose(const SmVoxels *v, const SmEngineParams *params, int lanes, int *turn)
 {
@@ -95,8 +104,10 @@ SmLayout lsm_axes_choose(const SmVoxels *v, const SmEngineParams *params, int la
                 (params->summation == SM_SUM_BARS && params->w <= lanes);
     bool may = sums && params->instances <= 1;
     *turn = 0;
-    double fill = may && params->layout != SM_LAYOUT_LISTS ? best_fill(v, lanes, turn) : 0;
-    if (may && (params->layout == SM_LAYOUT_BLOCKS || fill > fill_worth(v, params)))
+    double fill = may && params->layout != SM_LAYOUT_LISTS
+                      ? best_fill(v, is_box(v) ? lanes : GROUP, turn)
+                      : 0;
+    if (may && (params->layout == SM_LAYOUT_BLOCKS || fill > fill_worth(v, params, lanes)))
         return SM_LAYOUT_BLOCKS;
     for (int t = 0; t < 3; t++) /* lists: z, the pipeline's axis, is the longest */
         if (v->size[(t + 2) % 3] > v->size[(*turn + 2) % 3]) *turn = t;
