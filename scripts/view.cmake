@@ -1,6 +1,7 @@
 # The page's module: what bench/view exports, with all that plays a scene, for WebAssembly. Of bench/ it
 # takes no more than that, and of libraries libconfig's sources, whose folder SHAPEBENCH_VIEW names.
 
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS bench/view/view.h)
 file(STRINGS bench/view/view.h exports REGEX "^[a-z ]+[*]?view_[a-z_]+\\(")
 list(TRANSFORM exports REPLACE "^[a-z ]+[*]?(view_[a-z_]+)\\(.*" "-Wl,--export=\\1")
 

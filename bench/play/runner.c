@@ -328,6 +328,13 @@ static void free_particles(BenchRunner *runner)
     free(runner->push_count);
     free(runner->push_particle);
     free(runner->push_impulse);
+    runner->x0 = NULL;
+    runner->handle = runner->bound = NULL;
+    runner->handle_source = NULL;
+    runner->handle_instance = runner->push_count = NULL;
+    runner->push_particle = NULL;
+    runner->push_impulse = NULL;
+    runner->held = runner->grips = runner->bound_count = 0;
 }
 
 void bench_runner_free(BenchRunner *runner)
@@ -341,12 +348,10 @@ void bench_runner_free(BenchRunner *runner)
 SmCode bench_runner_refresh(BenchRunner *runner, SmError *error)
 {
     free_particles(runner);
-    runner->held = runner->grips = 0;
     find_particles(runner);
-    SmCode code = make_handles(runner, error);
-    if (!code) code = make_forces(runner, error);
-    if (!code) bind(runner, runner->time);
-    return code;
+    SmCode code = make_handles(runner, error), forces = make_forces(runner, code ? NULL : error);
+    bind(runner, runner->time);
+    return code ? code : forces;
 }
 
 /* The point p of the rest body after squash, twist about y and bend about z. */

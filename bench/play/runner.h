@@ -58,7 +58,8 @@ void bench_runner_disturb(BenchRunner *runner, unsigned long seed);
 void bench_runner_grip(BenchRunner *runner, int count, const SmHandle *grip);
 
 /* After a change of the engine's particles (octree/engine.h): counts, rest positions, handles and
- * forces anew, and no grips. A force keeps what it was in all, shared out by mass. O(particles). */
+ * forces anew, and no grips. A force keeps what it was in all, shared out by mass. After an error,
+ * that nothing is left to hold or push, it can go on without. O(particles). */
 SmCode bench_runner_refresh(BenchRunner *runner, SmError *error);
 
 /* What is bound to the engine now: handles that still hold, at their poses, and obstacles. Valid

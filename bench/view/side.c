@@ -64,11 +64,28 @@ void view_side_free(ViewSide *side)
     *side = (ViewSide){0};
 }
 
+bool view_side_is_whole(const ViewSide *side)
+{
+    for (int g = 0; view_side_is_there(side) && g < side->play.count; g++) {
+        SmCounts counts;
+        const BenchGroup *group = &side->play.group[g];
+        group->runner.type->count(group->runner.engine, &counts);
+        if (counts.broken > 0 || sm_skin_cut_triangles(&group->skin) > 0) return false;
+    }
+    return true;
+}
+
+bool view_side_is_like(const ViewSide *side, const ViewSide *other)
+{
+    if (side->play.count != other->play.count) return false;
+    for (int g = 0; g < side->play.count; g++)
+        if (side->play.group[g].runner.particles != other->play.group[g].runner.particles)
+            return false;
+    return true;
+}
+
 void view_side_go_on(ViewSide *side, const ViewSide *from)
 {
-    if (!view_side_is_there(side) || side->play.count != from->play.count) return;
-    for (int g = 0; g < side->play.count; g++)
-        if (side->play.group[g].runner.particles != from->play.group[g].runner.particles) return;
     for (int g = 0; g < side->play.count; g++) {
         BenchRunner *to = &side->play.group[g].runner;
         const BenchRunner *was = &from->play.group[g].runner;
@@ -82,17 +99,17 @@ void view_side_go_on(ViewSide *side, const ViewSide *from)
     }
     side->play.time = from->play.time;
     side->steps = from->steps;
+    memcpy(side->dragged, from->dragged, sizeof side->dragged);
 }
 
 /* ---- grips */
 
-static const SmHandle *handle_of(const ViewSide *side, int number, int *group, int *place)
+static const SmHandle *handle_of(const ViewSide *side, int number, int *group)
 {
     for (int g = 0; view_side_is_there(side) && g < side->play.count; g++)
         for (int i = 0; i < side->held[g].count; i++)
             if (side->held[g].grip[i] == number) {
                 *group = g;
-                *place = i;
                 return &side->held[g].handle[i];
             }
     return NULL;
@@ -174,7 +191,8 @@ static void fit_pose(const BenchRunner *runner, SmHandle *handle)
 }
 
 /* Adds the grip to what the group holds, if it is of one of its bodies. */
-static void take(BenchGroup *group, ViewHeld *held, const ViewGrip *grip, int number, char *taken)
+static void take(BenchGroup *group, ViewHeld *held, const ViewGrip *grip, const double dragged[3],
+                 char *taken)
 {
     const BenchRunner *runner = &group->runner;
     for (long k = 0; k < group->body.instances; k++) {
@@ -188,43 +206,79 @@ static void take(BenchGroup *group, ViewHeld *held, const ViewGrip *grip, int nu
             continue;
         }
         fit_pose(runner, handle);
-        for (int d = 0; d < 3; d++)
-            held->start[held->count][d] = handle->pose[d][3] - grip->drag[d];
-        held->grip[held->count++] = number;
+        for (int d = 0; d < 3; d++) held->start[held->count][d] = handle->pose[d][3] - dragged[d];
+        held->count++;
     }
 }
 
-void view_side_hold(ViewSide *side, const ViewGrip *grip)
+/* Keeps the handles of grips that are in use; the others' material is let go. */
+static void keep_used(ViewHeld *held, const ViewGrip *grip, bool anew)
 {
+    int kept = 0;
+    for (int i = 0; i < held->count; i++) {
+        if (anew || !grip[held->grip[i]].used) {
+            free((void *)held->handle[i].particle);
+            continue;
+        }
+        held->handle[kept] = held->handle[i];
+        held->grip[kept] = held->grip[i];
+        memmove(held->start[kept++], held->start[i], sizeof held->start[i]);
+    }
+    held->count = kept;
+}
+
+static bool has_grip(const ViewHeld *held, int number)
+{
+    for (int i = 0; i < held->count; i++)
+        if (held->grip[i] == number) return true;
+    return false;
+}
+
+static void mark(const SmHandle *handle, int count, char *taken)
+{
+    for (int i = 0; i < count; i++)
+        for (long p = 0; p < handle[i].count; p++) taken[handle[i].particle[p]] = 1;
+}
+
+void view_side_hold(ViewSide *side, const ViewGrip *grip, bool anew)
+{
+    for (int i = 0; i < VIEW_GRIPS; i++)
+        if (!grip[i].used) memset(side->dragged[i], 0, sizeof side->dragged[i]);
     for (int g = 0; view_side_is_there(side) && g < side->play.count; g++) {
-        BenchGroup *group = &side->play.group[g];
-        BenchRunner *runner = &group->runner;
-        ViewHeld before = side->held[g], *held = &side->held[g];
+        BenchRunner *runner = &side->play.group[g].runner;
+        ViewHeld *held = &side->held[g];
         char *taken = sm_alloc((size_t)runner->particles, 1);
-        for (int i = 0; i < runner->held; i++)
-            for (long p = 0; p < runner->handle[i].count; p++)
-                taken[runner->handle[i].particle[p]] = 1;
-        held->count = 0;
-        for (int i = 0; i < VIEW_GRIPS; i++)
-            if (grip[i].used) take(group, held, &grip[i], i, taken);
+        mark(runner->bound, runner->bound_count - runner->grips, taken); /* the scene's handles */
+        keep_used(held, grip, anew);
+        mark(held->handle, held->count, taken);
+        for (int i = 0; i < VIEW_GRIPS; i++) {
+            if (!grip[i].used || has_grip(held, i)) continue;
+            held->grip[held->count] = i;
+            take(&side->play.group[g], held, &grip[i], side->dragged[i], taken);
+        }
         bench_runner_grip(runner, held->count, held->handle);
-        let_go(&before);
         free(taken);
     }
 }
 
-void view_side_drag(ViewSide *side, const ViewGrip *grip, int number)
+/* Moves what is held by `share` of what it is behind its hand. */
+static void follow(ViewSide *side, const ViewGrip *grip, double share)
 {
-    int g, i;
-    if (!handle_of(side, number, &g, &i)) return;
-    ViewHeld *held = &side->held[g];
-    for (int d = 0; d < 3; d++) held->handle[i].pose[d][3] = held->start[i][d] + grip->drag[d];
+    for (int i = 0; i < VIEW_GRIPS; i++)
+        for (int d = 0; d < 3 && grip[i].used; d++)
+            side->dragged[i][d] += share * (grip[i].drag[d] - side->dragged[i][d]);
+    for (int g = 0; g < side->play.count; g++) {
+        ViewHeld *held = &side->held[g];
+        for (int i = 0; i < held->count; i++)
+            for (int d = 0; d < 3; d++)
+                held->handle[i].pose[d][3] = held->start[i][d] + side->dragged[held->grip[i]][d];
+    }
 }
 
 bool view_side_grip(const ViewSide *side, int number, double middle[3])
 {
-    int g, i;
-    const SmHandle *handle = handle_of(side, number, &g, &i);
+    int g;
+    const SmHandle *handle = handle_of(side, number, &g);
     if (!handle) return false;
     const BenchRunner *runner = &side->play.group[g].runner;
     double(*x)[3] = sm_alloc((size_t)handle->count, sizeof *x);
@@ -239,25 +293,28 @@ bool view_side_grip(const ViewSide *side, int number, double middle[3])
 
 /* ---- steps */
 
-/* What the scene does before the steps of a frame. Particles that are split or merged have other
- * numbers: what is held is found again. */
+/* What the scene does before the steps of a frame. What cannot be done is left; particles that are
+ * split or merged have other numbers, and what is held is found again. */
 static void change(ViewSide *side, const ViewGrip *grip)
 {
-    bool resampled = false;
+    SmError left;
+    bool anew = false;
     if (!bench_playback_changes(&side->play)) return;
-    if (bench_playback_change(&side->play, &side->absent)) return; /* it goes on as it is */
-    for (int g = 0; g < side->play.count; g++) resampled |= side->play.group[g].last.resampled;
-    if (resampled) view_side_hold(side, grip);
+    bench_playback_change(&side->play, &left);
+    for (int g = 0; g < side->play.count; g++)
+        anew |= side->play.group[g].runner.grips != side->held[g].count;
+    if (anew) view_side_hold(side, grip, true);
     if (bench_playback_split(&side->play)) free_surface(side);
 }
 
 void view_side_step(ViewSide *side, int steps, const ViewGrip *grip)
 {
     SmLaps laps;
-    if (!view_side_is_there(side)) return;
+    if (!view_side_is_there(side) || steps < 1) return;
     sm_laps_start(&laps);
     for (int i = 0; i < steps; i++) {
         if (side->steps++ % side->scene.steps_per_frame == 0) change(side, grip);
+        follow(side, grip, 1.0 / (steps - i));
         bench_playback_prepare(&side->play);
         sm_lap(&laps, SM_OTHER);
         bench_playback_advance(&side->play, &laps);
@@ -316,10 +373,11 @@ void view_side_draw(ViewSide *side)
         sm_skin_points(&group->skin, NULL, side->place + first, side->normal + first);
         first += group->body.instances * group->skin.surface.vertex_count;
     }
-    for (long i = 0; i < 3 * side->vertices; i++) {
-        side->point32[i] = (float)side->place[0][i];
-        side->normal32[i] = (float)side->normal[0][i];
-    }
+    for (long v = 0; v < side->vertices; v++)
+        for (int d = 0; d < 3; d++) {
+            side->point32[3 * v + d] = (float)side->place[v][d];
+            side->normal32[3 * v + d] = (float)side->normal[v][d];
+        }
 }
 
 bool view_side_vertex(const ViewSide *side, long vertex, long *instance, double rest[3])

@@ -10,7 +10,7 @@ typedef struct {
     bool used;
     long instance;
     double rest[3], radius; /* of the body before its pose, mesh units */
-    double drag[3];         /* how far it has been moved since */
+    double drag[3];         /* how far the hand has moved since */
 } ViewGrip;
 
 enum { VIEW_GRIPS = 64 };
@@ -20,15 +20,16 @@ typedef struct {
     int count;
     SmHandle handle[VIEW_GRIPS];
     int grip[VIEW_GRIPS];        /* each handle's */
-    double start[VIEW_GRIPS][3]; /* of its pose's translation, before any drag */
+    double start[VIEW_GRIPS][3]; /* of its pose's translation, without any drag */
 } ViewHeld;
 
 typedef struct {
     BenchScene scene;
     BenchPlayback play; /* group NULL: the side is not there, as `absent` says */
     SmError absent;
-    ViewHeld *held;    /* [play.count] */
-    long steps, timed; /* in all, and since the laps were cleared */
+    ViewHeld *held;                /* [play.count] */
+    double dragged[VIEW_GRIPS][3]; /* how far its material has followed each grip */
+    long steps, timed;             /* in all, and since the laps were cleared */
     double lap[SM_STAGES];
     double build_seconds;
 
@@ -48,17 +49,22 @@ void view_side_free(ViewSide *side);
 
 bool view_side_is_there(const ViewSide *side);
 
-/* Positions, velocities and time of another side whose groups have as many particles. */
+/* May another side go on where this one is? Not where material has been cut or has broken. */
+bool view_side_is_whole(const ViewSide *side);
+
+/* Has it groups of as many particles as another side? */
+bool view_side_is_like(const ViewSide *side, const ViewSide *other);
+
+/* Positions, velocities and time of another side that it is like. */
 void view_side_go_on(ViewSide *side, const ViewSide *from);
 
-/* Steps, with the scene's changes before those of each frame, and grips as they are. */
+/* Steps, with the scene's changes before those of each frame. What is held follows the hands in
+ * even parts, so that it has their velocity when it is let go. */
 void view_side_step(ViewSide *side, int steps, const ViewGrip *grip);
 
-/* Holds all grips in use, wherever each now is; after they have come or gone. */
-void view_side_hold(ViewSide *side, const ViewGrip *grip);
-
-/* The pose of a grip that was moved. */
-void view_side_drag(ViewSide *side, const ViewGrip *grip, int number);
+/* Holds all grips in use, after some have come or gone; those that stay hold what they held, unless
+ * particles are `anew`. */
+void view_side_hold(ViewSide *side, const ViewGrip *grip, bool anew);
 
 /* Where the middle of a grip's material is; false: this side does not hold it. */
 bool view_side_grip(const ViewSide *side, int number, double middle[3]);

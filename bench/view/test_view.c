@@ -65,8 +65,9 @@ TEST(sides_play_the_scene)
         assert_int_equal(view_triangles(side), triangles);
         double(*point)[3] = sm_alloc((size_t)vertices, sizeof *point);
         bench_playback_points(&play, point);
-        for (long i = 0; i < 3 * vertices; i++)
-            assert_true(view_points(side)[i] == (float)point[0][i]);
+        for (long v = 0; v < vertices; v++)
+            for (int d = 0; d < 3; d++)
+                assert_true(view_points(side)[3 * v + d] == (float)point[v][d]);
         free(point);
         bench_playback_free(&play);
         bench_body_free(&body);
@@ -132,6 +133,114 @@ TEST(scenes_are_changed_live)
     view_step(0, 10); /* held, it stays there */
     assert_true(view_grip(0, grip) && fabs(view_figure(0, VIEW_TIME) - 0.3) < 1e-9);
     view_release(grip);
+}
+
+/* Thrown by a hand that moved evenly, a body flies with the hand's velocity, however many steps a
+ * frame has. */
+TEST(what_is_thrown_flies)
+{
+    const char *whole =
+        "mesh = \"shape:block\"; particles = 300; w = 2; octree = { levels = 1; };\n"
+        "steps_per_frame = 4;\n";
+    open_scene(whole);
+    double h = view_figure(0, VIEW_H);
+    int grip = view_grab(0, 0, 100); /* all of it */
+    for (int frame = 1; frame <= 5; frame++) {
+        view_drag(grip, 4 * h * frame, 0, 0);
+        view_step(0, 4);
+    }
+    view_release(grip);
+    double was[3], now[3];
+    vertex(0, 5, was);
+    view_step(0, 10);
+    vertex(0, 5, now);
+    assert_true(fabs(now[0] - was[0] - 10 * h) < 1e-3 * h);
+}
+
+/* What hands do between steps is done in the next ones: with others that come and go, and a knob.
+ */
+TEST(hands_wait_for_steps)
+{
+    open_scene(block);
+    double cell = view_figure(0, VIEW_CELL), was[2][3], now[3];
+    long top = 0, low = 0;
+    for (long v = 0; v < view_vertices(0); v++) {
+        if (view_points(0)[3 * v + 1] > view_points(0)[3 * top + 1]) top = v;
+        if (fabs(view_points(0)[3 * v + 1] - 0.0) < cell) low = v;
+    }
+    int first = view_grab(0, (int)top, cell);
+    memcpy(was[0], view_grip(0, first), sizeof was[0]);
+    view_drag(first, 3 * cell, 0, 0);
+    int second = view_grab(0, (int)low, cell);
+    assert_true(second >= 0 && second != first);
+    memcpy(was[1], view_grip(0, second), sizeof was[1]);
+    assert_int_equal(opened(block, 1), 0);
+    view_step(0, 5);
+    memcpy(now, view_grip(0, first), sizeof now);
+    assert_true(fabs(now[0] - was[0][0] - 3 * cell) < 1e-3 * cell);
+    view_release(first);
+    assert_null(view_grip(0, first));
+    view_step(0, 5);
+    memcpy(now, view_grip(0, second), sizeof now);
+    for (int d = 0; d < 3; d++) assert_true(fabs(now[d] - was[1][d]) < 1e-3 * cell);
+    assert_int_equal(view_grab(0, (int)top, cell), first); /* the same number, from the beginning */
+    memcpy(was[0], view_grip(0, first), sizeof was[0]);
+    view_drag(first, cell, 0, 0);
+    view_step(0, 1);
+    assert_true(fabs(view_grip(0, first)[0] - was[0][0] - cell) < 1e-3 * cell);
+}
+
+/* A hand keeps its hold while a blade cuts the body and an octree's nodes are numbered anew; a body
+ * that is cut begins anew with a knob. */
+TEST(hands_hold_through_a_cut)
+{
+    open_scene(view_scene_text("liver"));
+    int side = VIEW_OCTREE, steps = 0;
+    double nodes = view_figure(side, VIEW_PARTICLES), from[3];
+    long left = 0;
+    for (long v = 0; v < view_vertices(side); v++)
+        if (view_points(side)[3 * v] < view_points(side)[3 * left]) left = v;
+    int grip = view_grab(side, (int)left, view_figure(side, VIEW_CELL));
+    memcpy(from, view_grip(side, grip), sizeof from);
+    for (; steps < 260; steps++) {
+        view_drag(grip, -1e-4 * (steps + 1), 0, 0);
+        view_step(side, 1);
+    }
+    assert_true(view_figure(side, VIEW_PARTICLES) > nodes);
+    assert_true(fabs(view_grip(side, grip)[0] - from[0] + 1e-4 * steps) < 5e-3);
+    const char *text = view_scene_text("liver");
+    assert_int_equal(opened(text, 1), 0);
+    assert_true(view_figure(side, VIEW_TIME) == 0);
+}
+
+/* A handle whose only node is split away holds nothing any more, and the rest goes on. */
+TEST(a_handle_may_lose_its_node)
+{
+    const char *text = "mesh = \"shape:block\"; engine = \"octree\"; particles = 4000;\n"
+                       "octree = { levels = 3; nodes = 30; };\n"
+                       "handles = ( { sphere_centre = [0.058135, 0.053946, 0.060883];\n"
+                       "              sphere_radius = 0.00504; } );\n"
+                       "touches = ( { instance = 1; centre = [0.0, 0.1, 0.0]; radius = 0.15;\n"
+                       "              level = 3; start = 0.1; stop = 0.6; hold = 0.1; } );\n";
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(opened(text, i), 0);
+        assert_string_equal(view_absent(VIEW_OCTREE), "");
+        double nodes = view_figure(VIEW_OCTREE, VIEW_PARTICLES);
+        view_step(VIEW_OCTREE, 30);
+        assert_true(view_figure(VIEW_OCTREE, VIEW_PARTICLES) > nodes);
+        assert_string_equal(view_absent(VIEW_OCTREE), "");
+    }
+}
+
+/* What takes more memory than a page has is refused. */
+TEST(bodies_are_of_a_size)
+{
+    open_scene(block);
+    assert_int_equal(opened("mesh = \"shape:block\"; particles = 3000000;", 0), SM_MEMORY);
+    assert_non_null(strstr(view_message(), "a page takes 1e6"));
+    assert_int_equal(opened("mesh = \"shape:block\"; particles = 8; instances = 100000;", 0),
+                     SM_MEMORY);
+    assert_true(view_figure(0, VIEW_PARTICLES) > 500);
 }
 
 /* Numbers that no side, vertex or grip has do nothing. */

@@ -75,22 +75,40 @@ static void close_sides(ViewSide *side[VIEW_SIDES], BenchBody *body)
     free(body);
 }
 
-/* Takes the place of what was open. */
+/* Is it the same body that was open, in as many places? */
+static bool is_same(const BenchBody *body)
+{
+    return view.body && body->hash == view.body->hash && body->instances == view.body->instances;
+}
+
+/* Takes the place of what was open. Motion goes on only where both sides' does. */
 static void replace(ViewSide *side[VIEW_SIDES], BenchBody *body, bool keep)
 {
-    bool opened = view.body != NULL;
-    if (keep && opened)
-        for (int s = 0; s < VIEW_SIDES; s++) view_side_go_on(side[s], view.side[s]);
-    else
-        memset(view.grip, 0, sizeof view.grip);
+    bool same = keep && is_same(body), on = same;
+    for (int s = 0; s < VIEW_SIDES && on; s++)
+        on = view_side_is_like(side[s], view.side[s]) && view_side_is_whole(view.side[s]);
+    for (int s = 0; s < VIEW_SIDES && on; s++) view_side_go_on(side[s], view.side[s]);
+    if (!same) memset(view.grip, 0, sizeof view.grip);
     close_sides(view.side, view.body);
     memcpy(view.side, side, sizeof view.side);
     view.body = body;
     for (int s = 0; s < VIEW_SIDES; s++) {
-        view_side_hold(side[s], view.grip);
+        view_side_hold(side[s], view.grip, true);
         view_side_draw(side[s]);
     }
-    if (!keep || !opened) find_bounds();
+    if (!same) find_bounds();
+}
+
+/* The page's memory ends at 4 GB, which nothing there says. */
+static SmCode check_size(const BenchScene *scene, SmError *error)
+{
+    const double most = 1e6;
+    double wanted =
+        fmax((double)scene->voxel.particles, (double)scene->cells) * (double)scene->instances;
+    if (wanted <= most && (double)scene->instances <= 1e4) return SM_OK;
+    return sm_fail(error, SM_MEMORY,
+                   "scene: %.3g particles in %ld bodies; a page takes 1e6 in 10000: ask for fewer",
+                   wanted, scene->instances);
 }
 
 int view_open(int bytes, int keep)
@@ -98,7 +116,9 @@ int view_open(int bytes, int keep)
     static const char *const engine[VIEW_SIDES] = {"fastlsm", "octree"};
     static BenchScene scene;
     SmError error;
-    if (bench_scene_parse(view.text, (size_t)bytes, "scene", &scene, &error)) return refuse(&error);
+    if (bench_scene_parse(view.text, (size_t)bytes, "scene", &scene, &error) ||
+        check_size(&scene, &error))
+        return refuse(&error);
     BenchBody *body = sm_alloc(1, sizeof *body);
     ViewSide *side[VIEW_SIDES] = {NULL, NULL};
     if (bench_body_of_scene(&scene, NULL, body, &error)) {
@@ -271,7 +291,7 @@ const double *view_obstacle(int number)
 static void hold_all(void)
 {
     for (int s = 0; s < VIEW_SIDES; s++)
-        if (side_of(s)) view_side_hold(side_of(s), view.grip);
+        if (side_of(s)) view_side_hold(side_of(s), view.grip, false);
 }
 
 static bool is_held(int grip)
@@ -299,9 +319,8 @@ int view_grab(int side, int vertex, double radius)
 void view_drag(int grip, double x, double y, double z)
 {
     if (grip < 0 || grip >= VIEW_GRIPS || !view.grip[grip].used) return;
+    if (!isfinite(x) || !isfinite(y) || !isfinite(z)) return;
     memcpy(view.grip[grip].drag, (double[3]){x, y, z}, sizeof(double[3]));
-    for (int s = 0; s < VIEW_SIDES; s++)
-        if (side_of(s)) view_side_drag(side_of(s), &view.grip[grip], grip);
 }
 
 void view_release(int grip)
@@ -309,13 +328,6 @@ void view_release(int grip)
     if (grip < 0 || grip >= VIEW_GRIPS || !view.grip[grip].used) return;
     view.grip[grip].used = false;
     hold_all();
-}
-
-int view_grips(void)
-{
-    int last = VIEW_GRIPS;
-    while (last > 0 && !view.grip[last - 1].used) last--;
-    return last;
 }
 
 const double *view_grip(int side, int grip)

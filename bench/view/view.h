@@ -67,7 +67,7 @@ const float *view_points(int side);  /* [vertices][3] */
 const float *view_normals(int side); /* [vertices][3], unit */
 const int *view_indices(int side);   /* [triangles][3] */
 
-/* Bounding box of what is drawn at rest, low and high corner: [6]. */
+/* Bounding box of what is drawn at first, low and high corner: [6]. */
 const double *view_bounds(void);
 
 /* The scene's obstacles: 8 numbers each: kind (0 plane, 1 sphere, 2 box, 3 capsule), a, b, radius
@@ -77,12 +77,11 @@ const double *view_obstacle(int number);
 
 /* Takes hold of the material around vertex number `vertex` of a side within `radius` of it, of one
  * body, on both sides at the same place of the body; the grip's number, or -1 where nothing can be
- * held. Then moves it, by what has been dragged from where it was grabbed; or lets it go. A grip
- * that is not moved is a pin. */
+ * held. Then moves it, in the steps that follow, by what has been dragged from where it was
+ * grabbed; or lets it go. A grip that is not moved is a pin. */
 int view_grab(int side, int vertex, double radius);
 void view_drag(int grip, double x, double y, double z);
 void view_release(int grip);
-int view_grips(void);                        /* numbers given out since view_open() */
 const double *view_grip(int side, int grip); /* where its middle is now, [3]; NULL: released */
 
 #endif

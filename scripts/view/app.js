@@ -69,8 +69,14 @@ export class App {
 
     // The engine has trapped: it begins anew with the scene that was open.
     async recover(trap) {
+        const text = this.text;
         await this.engine.restart();
-        if (this.text && !this.engine.open(this.text, false)) this.opened(this.text, false);
+        this.text = '';
+        try {
+            if (text && !this.engine.open(text, false)) this.opened(text, false);
+        } catch {
+            await this.engine.restart(); // with nothing open
+        }
         return `The engine stopped and has begun anew: ${trap.message}`;
     }
 
@@ -86,6 +92,7 @@ export class App {
     }
 
     frame() {
+        if (!this.stage) return;
         const { width, height } = this.views[0].getBoundingClientRect();
         this.camera.frame(this.stage, width / height);
         this.changed();
@@ -157,7 +164,7 @@ export class App {
 
     // One animation frame.
     async tick(now) {
-        if (this.busy || now - this.last < LEAST_FRAME_MS) return;
+        if (this.busy || !this.text || now - this.last < LEAST_FRAME_MS) return;
         this.last = now;
         try {
             if (this.playing) this.play();
@@ -167,7 +174,8 @@ export class App {
             this.show(false);
         } catch (trap) {
             this.busy = true;
-            this.pause(true);
+            this.playing = this.stale = false;
+            $('pause').textContent = 'Play';
             this.say(await this.recover(trap));
             this.busy = false;
         }
@@ -214,7 +222,8 @@ export class App {
 
     picturePNG() {
         this.draw();
-        const time = (side) => `${SIDES[side]}, ${this.engine.figure(side, 'time').toFixed(2)} s`;
+        const time = (side) => (this.engine.absent(side) ? ''
+            : `${SIDES[side]}, ${this.engine.figure(side, 'time').toFixed(2)} s`);
         const ink = getComputedStyle(document.body).color;
         savePicture($('canvas'), this.boxes(), [time(0), time(1)], ink);
     }
@@ -230,10 +239,14 @@ export class App {
         }
     }
 
-    // Opens the scene that the address carries, unless it is the one that was copied from here.
+    // Opens the scene that the address carries, unless it is the one that was copied from here: '', or
+    // why not; null where it carries none.
     async openLink() {
-        const text = location.hash !== this.fragment && await unpackScene(location.hash);
-        return Boolean(text) && !await this.visit(text);
+        if (location.hash === this.fragment || !location.hash.includes('scene=')) return null;
+        const text = await unpackScene(location.hash);
+        const refused = text ? await this.visit(text) : 'The link is damaged: no scene can be read from it.';
+        this.say(refused);
+        return refused;
     }
 
     // Where a vertex is in the canvas, in its pixels from its upper left corner.

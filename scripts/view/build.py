@@ -6,10 +6,12 @@
 With a scene's text the page opens with it. The page runs from file://, where modules cannot import
 each other by path: each is a data: URL with a name in the import map."""
 import base64
+import contextlib
 import gzip
 import json
 import os
 import pathlib
+import re
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -35,25 +37,29 @@ def build(wasm, scene):
         '@DATA@': as_json({'shaders': shaders, 'scene': scene}),
         '@WASM@': encode(gzip.compress(wasm, mtime=0)),
     }
-    page = (HERE / 'page.html').read_text()
-    for mark, text in parts.items():
-        before, after = page.split(mark)  # each is there once
-        page = before + text + after
-    return page
+    page = (HERE / 'page.html').read_text(encoding='utf-8')
+    return re.sub('|'.join(parts), lambda mark: parts[mark.group()], page)
 
 
 def main(arguments):
     if len(arguments) not in (2, 3):
         sys.exit(__doc__)
     wasm, out = pathlib.Path(arguments[0]), pathlib.Path(arguments[1])
-    scene = pathlib.Path(arguments[2]).read_text() if len(arguments) == 3 else ''
-    new = out.with_name(f'{out.name}.{os.getpid()}.tmp')
     try:
-        new.write_text(build(wasm.read_bytes(), scene))
+        scene = pathlib.Path(arguments[2]).read_text(encoding='utf-8') if len(arguments) == 3 else ''
+    except (OSError, ValueError) as error:
+        print(f'{arguments[2]}: cannot be read as text (UTF-8): {error}', file=sys.stderr)
+        sys.exit(3)
+    page = build(wasm.read_bytes(), scene)
+    new = f'{out}.{os.getpid()}.tmp'
+    try:
+        pathlib.Path(new).write_text(page, encoding='utf-8')
         os.replace(new, out)
     except OSError as error:
-        new.unlink(missing_ok=True)
-        sys.exit(f'cannot write {out}: {error.strerror}')
+        with contextlib.suppress(OSError):
+            os.unlink(new)
+        print(f'cannot write {out}: {error.strerror}: name a file in a folder that is there', file=sys.stderr)
+        sys.exit(4)
 
 
 main(sys.argv[1:])

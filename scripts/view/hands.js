@@ -79,6 +79,9 @@ export class Hands {
     }
 
     release(grip) {
+        for (const pointer of this.pointers.values())
+            if (pointer.hold?.grip === grip) pointer.hold = null;
+        if (this.keyHold?.grip === grip) this.keyHold = null;
         this.app.engine.release(grip);
         this.moved.delete(grip);
         this.app.changed();
@@ -167,9 +170,10 @@ export class Hands {
             if (this.keyHold) this.app.say(`Holding ${SIDES[side]}: arrows move it, Enter lets go.`);
             return true;
         }
-        if (!this.keyHold) return false;
+        if (!this.keyHold || event.target.closest('button, summary, a')) return false;
         if (event.key === 'Enter' || event.key === 'Escape') {
-            this.letGo(this.keyHold, event.key === 'Enter' && (event.shiftKey || this.app.pinning()));
+            const pin = event.key === 'Enter' && (event.shiftKey || this.app.pinning());
+            this.letGo(this.keyHold, pin || this.keyHold.pinned);
             this.keyHold = null;
             this.app.say('Let go.');
             return true;

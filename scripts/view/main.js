@@ -28,12 +28,24 @@ function wire(app) {
     window.addEventListener('hashchange', () => app.openLink());
 }
 
+// The link's scene, else the page's own, else the first; what was refused is said.
+async function openFirst(app, own) {
+    let refused = await app.openLink();
+    const others = refused === '' ? [] : [own, app.engine.sceneText(FIRST_SCENE)].filter(Boolean);
+    for (const text of others) {
+        const why = await app.visit(text);
+        refused ||= why;
+        if (!why) break;
+    }
+    app.say(refused);
+}
+
 async function start() {
     const data = JSON.parse($('data').textContent);
     const engine = await Engine.create(await unzip(fromBase64($('wasm').textContent), 'gzip'));
     const app = new App(engine, data.shaders);
     wire(app);
-    if (!await app.openLink()) await app.visit(data.scene || engine.sceneText(FIRST_SCENE));
+    await openFirst(app, data.scene);
     const loop = (now) => { app.tick(now); requestAnimationFrame(loop); };
     requestAnimationFrame(loop);
     return app;

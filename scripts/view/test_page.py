@@ -162,6 +162,7 @@ class Page(unittest.TestCase):
         chain.w3c_actions.pointer_action.pointer_down()
         chain.w3c_actions.pointer_action.move_to_location(round(at["x"]) + by[0], round(at["y"]) + by[1])
         chain.perform()
+        self.ask("await new Promise((done) => requestAnimationFrame(() => setTimeout(done, 100)))")  # it is there
 
     def test_random_gestures_stay_finite(self):
         """Grabs and throws at random, faster than any hand."""
@@ -185,6 +186,21 @@ class Page(unittest.TestCase):
         whole = self.ask("return shapebench.engine.sceneText('liver')")
         self.ask("const m = await import('view/scene_text'); for (let end = 0; end <= values[0].length; end++) "
                  "m.getNumber(m.setSetting(values[0].slice(0, end), 'w', 4), 'w')", whole)  # it ends
+
+    def test_links_carry_scenes(self):
+        """A copied link opens the scene with its settings in another page; a damaged one is said to be so."""
+        self.open("penguin")
+        self.turn("w", "3")
+        link = self.ask("document.getElementById('link').click(); "
+                        "await new Promise((done) => setTimeout(done, 300)); return location.href")
+        self.driver.get("about:blank")
+        self.driver.get(link)
+        self.ask("await shapebench.ready; shapebench.pause()")
+        self.assertIn("w = 3;", self.ask("return shapebench.text()"))
+        said = self.ask("location.hash = '#scene=zzzz'; await new Promise((done) => setTimeout(done, 300)); "
+                        "return document.getElementById('status').textContent")
+        self.assertIn("damaged", said)
+        self.assertIn("w = 3;", self.ask("return shapebench.text()"))
 
     def turn(self, name, value):
         """Sets what the scene file says, as its knob does."""
