@@ -9,7 +9,7 @@ import { packScene, savePicture, unpackScene } from 'view/share';
 import { findStage } from 'view/shapes';
 
 const WORK_MS = 25; // of steps in a frame, at most
-const LEAST_FRAME_MS = 12; // faster screens do not make time run faster
+const FRAME_MS = 1000 / 60; // faster screens do not make time run faster
 const SHOW_MS = 200; // between two looks at the figures
 const $ = (id) => document.getElementById(id);
 const nextPaint = () => new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
@@ -164,8 +164,8 @@ export class App {
 
     // One animation frame.
     async tick(now) {
-        if (this.busy || !this.text || now - this.last < LEAST_FRAME_MS) return;
-        this.last = now;
+        if (this.busy || !this.text || now - this.last < FRAME_MS - 1) return;
+        this.last = Math.max(this.last, now - 2 * FRAME_MS) + FRAME_MS;
         try {
             if (this.playing) this.play();
             if (this.stale) this.draw();

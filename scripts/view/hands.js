@@ -187,7 +187,9 @@ export class Hands {
 
     cameraKey(event) {
         const { camera } = this.app;
-        const arrow = ARROWS[event.key];
+        const scrolls = document.documentElement.scrollHeight > window.innerHeight;
+        const looking = !scrolls || this.app.views.includes(document.activeElement);
+        const arrow = looking && ARROWS[event.key];
         if (arrow && event.shiftKey) camera.pan(-0.1 * arrow[0], -0.1 * arrow[1]);
         else if (arrow) camera.orbit(0.08 * arrow[0], 0.08 * arrow[1]);
         else if (event.key === '+' || event.key === '=') camera.zoom(0.9);

@@ -80,7 +80,8 @@ class Slider extends Knob {
     constructor(panel, what) {
         const [least, most] = [what.least, what.most].map((x) => (what.log ? Math.log10(x) : x));
         const input = make('input', { type: 'range', min: least, max: most, step: what.by ?? 0.005 });
-        const buttons = (what.choices ?? []).map((value) => make('button', { textContent: value }));
+        const buttons = (what.choices ?? []).map((value) =>
+            make('button', { textContent: value, ariaLabel: `${what.label}: ${value}` }));
         super(panel, what, input, buttons);
         buttons.forEach((button) => button.addEventListener('click', () => {
             input.value = button.textContent;
