@@ -85,13 +85,14 @@ static bool is_box(const SmVoxels *v)
 
 /* The fill from which blocks are faster than lists, as measured (shapebench kernels shows both): in
  * a box no sum needs a fix-up; a large body's lists are beyond the L2 cache, and at w = 1 block
- * form needs few fixups, which four lanes do not make up for. */
+ * form needs few fixups, for which four lanes make up less. */
 static double fill_worth(const SmVoxels *v, const SmEngineParams *params, int lanes)
 {
     const long large = 30000;
-    bool lists_are_slow = v->particle_count >= large && params->w == 1 && lanes > 4;
+    bool lists_are_slow = v->particle_count >= large && params->w == 1;
     if (is_box(v)) return 0.5;
-    return lists_are_slow && !(params->strain_limit > 0) ? 0.6 : 0.85;
+    if (!lists_are_slow || params->strain_limit > 0) return 0.85;
+    return lanes > 4 ? 0.6 : 0.73;
 }
 
 /* How filled groups of 16 cells are says how many regions need fix-ups, which cost most: however
