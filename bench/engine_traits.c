@@ -12,6 +12,12 @@
 #include "scene/body.h"
 #include "scene/memory.h"
 
+static void set_cells(BenchScene *scene, double w, double epsilon, bool cells)
+{
+    (void)epsilon, (void)cells;
+    scene->params.w = (int)w;
+}
+
 static long *octree_nodes(BenchScene *scene)
 {
     return &scene->octree.sampling.nodes;
@@ -24,7 +30,7 @@ static long *meshless_nodes(BenchScene *scene)
 
 const BenchEngine bench_fastlsm = {.type = {&fastlsm_engine_f32, &fastlsm_engine_f64},
                                    .yardstick = true,
-                                   .set_width = bench_width_of_lattice,
+                                   .set_width = set_cells,
                                    .carrier = &bench_lattice_carrier,
                                    .twin = &bench_lattice_twin,
                                    .checker = &bench_matching_checker,

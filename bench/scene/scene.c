@@ -294,12 +294,6 @@ void bench_width_text(const OctWidth *width, char text[BENCH_WIDTH_TEXT])
                  width->edges);
 }
 
-void bench_width_of_lattice(BenchScene *scene, double w, double epsilon, bool cells)
-{
-    (void)epsilon, (void)cells;
-    scene->params.w = (int)w;
-}
-
 void bench_width_of_octree(BenchScene *scene, double w, double epsilon, bool cells)
 {
     scene->params.summation = SM_SUM_FAST; /* it has only one way */

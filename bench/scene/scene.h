@@ -143,8 +143,7 @@ enum { BENCH_WIDTH_TEXT = 64 };
 /* "2.5 finest cells", "0.75 x the node's edge", or their sum. */
 void bench_width_text(const OctWidth *width, char text[BENCH_WIDTH_TEXT]);
 
-/* How wide regions are (BenchEngine.set_width), of a lattice and of an octree. */
-void bench_width_of_lattice(BenchScene *scene, double w, double epsilon, bool cells);
+/* How wide an octree's regions are (BenchEngine.set_width). */
 void bench_width_of_octree(BenchScene *scene, double w, double epsilon, bool cells);
 
 /* Built-in scene names, in order, NULL-terminated. */

@@ -7,7 +7,6 @@
 #include "../scene/scene.h"
 
 static const BenchEngine lattice = {.type = {&fastlsm_engine_f32},
-                                    .set_width = bench_width_of_lattice,
                                     .carrier = &bench_lattice_carrier,
                                     .memory = bench_memory_lattice};
 static const BenchEngine sampled = {.type = {&octree_engine_f32},
@@ -15,7 +14,6 @@ static const BenchEngine sampled = {.type = {&octree_engine_f32},
                                     .own = BENCH_OF_SAMPLED,
                                     .whose = "the octree's",
                                     .set_width = bench_width_of_octree,
-                                    .adapt = bench_scene_sample,
                                     .carrier = &bench_octree_carrier,
                                     .memory = bench_memory_octree};
 static const BenchEngine *const list[] = {&lattice, &sampled, NULL};

@@ -4,8 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../lib/polar.h"
-#include "../../lib/vector.h"
 #include "../engines.h"
 
 bool view_side_is_there(const ViewSide *side)
@@ -35,7 +33,7 @@ void view_side_create(const BenchScene *scene, const BenchBody *body, const char
     if (bench_playback_create(&side->scene, body, bench_engine(engine)->type[0], 1, 1, &side->play,
                               &side->absent))
         return;
-    side->held = sm_alloc((size_t)side->play.count, sizeof *side->held);
+    view_grips_create(&side->play, &side->grips);
     side->build_seconds = sm_now() - start;
     view_side_draw(side);
 }
@@ -49,16 +47,9 @@ static void free_surface(ViewSide *side)
     side->index = NULL;
 }
 
-static void let_go(ViewHeld *held)
-{
-    for (int i = 0; i < held->count; i++) free((void *)held->handle[i].particle);
-    held->count = 0;
-}
-
 void view_side_free(ViewSide *side)
 {
-    for (int g = 0; side->held && g < side->play.count; g++) let_go(&side->held[g]);
-    free(side->held);
+    view_grips_free(&side->grips);
     free_surface(side);
     bench_playback_free(&side->play);
     *side = (ViewSide){0};
@@ -99,222 +90,31 @@ void view_side_go_on(ViewSide *side, const ViewSide *from)
     }
     side->play.time = from->play.time;
     side->steps = from->steps;
-    memcpy(side->dragged, from->dragged, sizeof side->dragged);
-}
-
-/* ---- grips */
-
-static const SmHandle *handle_of(const ViewSide *side, int number, int *group)
-{
-    for (int g = 0; view_side_is_there(side) && g < side->play.count; g++)
-        for (int i = 0; i < side->held[g].count; i++)
-            if (side->held[g].grip[i] == number) {
-                *group = g;
-                return &side->held[g].handle[i];
-            }
-    return NULL;
-}
-
-/* The particle nearest to the point, but for `other`, of those of one body that nothing holds, and
- * how far it is; -1: there is none. */
-static long nearest(const BenchRunner *runner, const char *taken, const double point[3], long other,
-                    double *away)
-{
-    long found = -1;
-    *away = INFINITY;
-    for (long p = 0; p < runner->count; p++) {
-        double distance = sqrt(sm_square_between(runner->x0[p], point));
-        if (taken[p] || p == other || distance >= *away) continue;
-        *away = distance;
-        found = p;
-    }
-    return found;
-}
-
-/* Particles of `grip` that nothing holds yet, of which `taken` then says so: those in its ball,
- * which is so large at least that the nearest and its neighbours are in it. What is drawn is
- * carried by several of an octree's large cells. */
-static long choose(const BenchRunner *runner, long instance, const ViewGrip *grip, char *taken,
-                   long *particle)
-{
-    long count = 0, first = instance * runner->count;
-    double away, apart;
-    long p = nearest(runner, taken + first, grip->rest, -1, &away);
-    if (p < 0) return 0;
-    nearest(runner, taken + first, runner->x0[p], p, &apart);
-    double reach = fmax(grip->radius, isfinite(apart) ? away + apart : away);
-    for (p = 0; p < runner->count; p++)
-        if (!taken[first + p] && sm_square_between(runner->x0[p], grip->rest) <= reach * reach)
-            particle[count++] = first + p;
-    for (long i = 0; i < count; i++) taken[particle[i]] = 1;
-    return count;
-}
-
-/* The field of the particles that a handle holds. */
-static void read_held(const BenchRunner *runner, SmField field, const SmHandle *handle,
-                      double (*value)[3])
-{
-    double(*all)[3] = sm_alloc((size_t)runner->particles, sizeof *all);
-    runner->type->get(runner->engine, field, all);
-    for (long i = 0; i < handle->count; i++)
-        memcpy(value[i], all[handle->particle[i]], sizeof *value);
-    free(all);
-}
-
-/* The rigid motion that takes the particles from where they rest to where they are, most nearly. */
-static void fit_pose(const BenchRunner *runner, SmHandle *handle)
-{
-    size_t count = (size_t)handle->count;
-    double(*from)[3] = sm_alloc(count, sizeof *from), (*to)[3] = sm_alloc(count, sizeof *to);
-    double A[9] = {0}, R[9], middle[2][3] = {{0}};
-    static const double upright[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    read_held(runner, SM_REST, handle, from);
-    read_held(runner, SM_POSITION, handle, to);
-    for (size_t i = 0; i < count; i++)
-        for (int d = 0; d < 3; d++) {
-            middle[0][d] += from[i][d] / (double)count;
-            middle[1][d] += to[i][d] / (double)count;
-        }
-    for (size_t i = 0; i < count; i++)
-        for (int e = 0; e < 9; e++)
-            A[e] += (to[i][e / 3] - middle[1][e / 3]) * (from[i][e % 3] - middle[0][e % 3]);
-    sm_polar_robust(A, upright, 1e-6, R);
-    for (int d = 0; d < 3; d++) {
-        handle->pose[d][3] = middle[1][d];
-        for (int e = 0; e < 3; e++) {
-            handle->pose[d][e] = R[3 * d + e];
-            handle->pose[d][3] -= R[3 * d + e] * middle[0][e];
-        }
-    }
-    free(from);
-    free(to);
-}
-
-/* Adds the grip to what the group holds, if it is of one of its bodies. */
-static void take(BenchGroup *group, ViewHeld *held, const ViewGrip *grip, const double dragged[3],
-                 char *taken)
-{
-    const BenchRunner *runner = &group->runner;
-    for (long k = 0; k < group->body.instances; k++) {
-        if (group->instance[k] != grip->instance) continue;
-        long *particle = sm_alloc((size_t)runner->count, sizeof *particle);
-        long count = choose(runner, k, grip, taken, particle);
-        SmHandle *handle = &held->handle[held->count];
-        *handle = (SmHandle){.count = count, .particle = particle};
-        if (!count) {
-            free(particle);
-            continue;
-        }
-        fit_pose(runner, handle);
-        for (int d = 0; d < 3; d++) held->start[held->count][d] = handle->pose[d][3] - dragged[d];
-        held->count++;
-    }
-}
-
-/* Keeps the handles of grips that are in use; the others' material is let go. */
-static void keep_used(ViewHeld *held, const ViewGrip *grip, bool anew)
-{
-    int kept = 0;
-    for (int i = 0; i < held->count; i++) {
-        if (anew || !grip[held->grip[i]].used) {
-            free((void *)held->handle[i].particle);
-            continue;
-        }
-        held->handle[kept] = held->handle[i];
-        held->grip[kept] = held->grip[i];
-        memmove(held->start[kept++], held->start[i], sizeof held->start[i]);
-    }
-    held->count = kept;
-}
-
-static bool has_grip(const ViewHeld *held, int number)
-{
-    for (int i = 0; i < held->count; i++)
-        if (held->grip[i] == number) return true;
-    return false;
-}
-
-static void mark(const SmHandle *handle, int count, char *taken)
-{
-    for (int i = 0; i < count; i++)
-        for (long p = 0; p < handle[i].count; p++) taken[handle[i].particle[p]] = 1;
-}
-
-void view_side_hold(ViewSide *side, const ViewGrip *grip, bool anew)
-{
-    for (int i = 0; i < VIEW_GRIPS; i++)
-        if (!grip[i].used) memset(side->dragged[i], 0, sizeof side->dragged[i]);
-    for (int g = 0; view_side_is_there(side) && g < side->play.count; g++) {
-        BenchRunner *runner = &side->play.group[g].runner;
-        ViewHeld *held = &side->held[g];
-        char *taken = sm_alloc((size_t)runner->particles, 1);
-        mark(runner->bound, runner->bound_count - runner->grips, taken); /* the scene's handles */
-        keep_used(held, grip, anew);
-        mark(held->handle, held->count, taken);
-        for (int i = 0; i < VIEW_GRIPS; i++) {
-            if (!grip[i].used || has_grip(held, i)) continue;
-            held->grip[held->count] = i;
-            take(&side->play.group[g], held, &grip[i], side->dragged[i], taken);
-        }
-        bench_runner_grip(runner, held->count, held->handle);
-        free(taken);
-    }
-}
-
-/* Moves what is held by `share` of what it is behind its hand. */
-static void follow(ViewSide *side, const ViewGrip *grip, double share)
-{
-    for (int i = 0; i < VIEW_GRIPS; i++)
-        for (int d = 0; d < 3 && grip[i].used; d++)
-            side->dragged[i][d] += share * (grip[i].drag[d] - side->dragged[i][d]);
-    for (int g = 0; g < side->play.count; g++) {
-        ViewHeld *held = &side->held[g];
-        for (int i = 0; i < held->count; i++)
-            for (int d = 0; d < 3; d++)
-                held->handle[i].pose[d][3] = held->start[i][d] + side->dragged[held->grip[i]][d];
-    }
-}
-
-bool view_side_grip(const ViewSide *side, int number, double middle[3])
-{
-    int g;
-    const SmHandle *handle = handle_of(side, number, &g);
-    if (!handle) return false;
-    const BenchRunner *runner = &side->play.group[g].runner;
-    double(*x)[3] = sm_alloc((size_t)handle->count, sizeof *x);
-    read_held(runner, SM_POSITION, handle, x);
-    for (int d = 0; d < 3; d++) {
-        middle[d] = 0;
-        for (long p = 0; p < handle->count; p++) middle[d] += x[p][d] / (double)handle->count;
-    }
-    free(x);
-    return true;
+    memcpy(side->grips.followed, from->grips.followed, sizeof side->grips.followed);
 }
 
 /* ---- steps */
 
 /* What the scene does before the steps of a frame. What cannot be done is left; particles that are
  * split or merged have other numbers, and what is held is found again. */
-static void change(ViewSide *side, const ViewGrip *grip)
+static void change(ViewSide *side, const ViewHand *hand)
 {
     SmError left;
-    bool anew = false;
     if (!bench_playback_changes(&side->play)) return;
     bench_playback_change(&side->play, &left);
-    for (int g = 0; g < side->play.count; g++)
-        anew |= side->play.group[g].runner.grips != side->held[g].count;
-    if (anew) view_side_hold(side, grip, true);
+    if (view_grips_are_lost(&side->grips, &side->play))
+        view_grips_hold(&side->grips, &side->play, hand, true);
     if (bench_playback_split(&side->play)) free_surface(side);
 }
 
-void view_side_step(ViewSide *side, int steps, const ViewGrip *grip)
+void view_side_step(ViewSide *side, int steps, const ViewHand *hand)
 {
     SmLaps laps;
     if (!view_side_is_there(side) || steps < 1) return;
     sm_laps_start(&laps);
     for (int i = 0; i < steps; i++) {
-        if (side->steps++ % side->scene.steps_per_frame == 0) change(side, grip);
-        follow(side, grip, 1.0 / (steps - i));
+        if (side->steps++ % side->scene.steps_per_frame == 0) change(side, hand);
+        view_grips_follow(&side->grips, hand, 1.0 / (steps - i));
         bench_playback_prepare(&side->play);
         sm_lap(&laps, SM_OTHER);
         bench_playback_advance(&side->play, &laps);

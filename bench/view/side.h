@@ -3,33 +3,14 @@
 #ifndef BENCH_SIDE_H
 #define BENCH_SIDE_H
 
-#include "../play/playback.h"
-
-/* What is held: the material of one body around a place of it, on both sides. */
-typedef struct {
-    bool used;
-    long instance;
-    double rest[3], radius; /* of the body before its pose, mesh units */
-    double drag[3];         /* how far the hand has moved since */
-} ViewGrip;
-
-enum { VIEW_GRIPS = 64 };
-
-/* What one group's engine holds for the grips. */
-typedef struct {
-    int count;
-    SmHandle handle[VIEW_GRIPS];
-    int grip[VIEW_GRIPS];        /* each handle's */
-    double start[VIEW_GRIPS][3]; /* of its pose's translation, without any drag */
-} ViewHeld;
+#include "grips.h"
 
 typedef struct {
     BenchScene scene;
     BenchPlayback play; /* group NULL: the side is not there, as `absent` says */
     SmError absent;
-    ViewHeld *held;                /* [play.count] */
-    double dragged[VIEW_GRIPS][3]; /* how far its material has followed each grip */
-    long steps, timed;             /* in all, and since the laps were cleared */
+    ViewGrips grips;
+    long steps, timed; /* in all, and since the laps were cleared */
     double lap[SM_STAGES];
     double build_seconds;
 
@@ -60,14 +41,7 @@ void view_side_go_on(ViewSide *side, const ViewSide *from);
 
 /* Steps, with the scene's changes before those of each frame. What is held follows the hands in
  * even parts, so that it has their velocity when it is let go. */
-void view_side_step(ViewSide *side, int steps, const ViewGrip *grip);
-
-/* Holds all grips in use, after some have come or gone; those that stay hold what they held, unless
- * particles are `anew`. */
-void view_side_hold(ViewSide *side, const ViewGrip *grip, bool anew);
-
-/* Where the middle of a grip's material is; false: this side does not hold it. */
-bool view_side_grip(const ViewSide *side, int number, double middle[3]);
+void view_side_step(ViewSide *side, int steps, const ViewHand *hand);
 
 /* The body and the place at rest of a vertex that is drawn; false: there is none such. */
 bool view_side_vertex(const ViewSide *side, long vertex, long *instance, double rest[3]);

@@ -13,7 +13,7 @@ static struct {
     char message[600];
     BenchBody *body;
     ViewSide *side[VIEW_SIDES];
-    ViewGrip grip[VIEW_GRIPS];
+    ViewHand hand[VIEW_HANDS];
     double bounds[6], middle[3], obstacle[8];
 } view;
 
@@ -88,12 +88,13 @@ static void replace(ViewSide *side[VIEW_SIDES], BenchBody *body, bool keep)
     for (int s = 0; s < VIEW_SIDES && on; s++)
         on = view_side_is_like(side[s], view.side[s]) && view_side_is_whole(view.side[s]);
     for (int s = 0; s < VIEW_SIDES && on; s++) view_side_go_on(side[s], view.side[s]);
-    if (!same) memset(view.grip, 0, sizeof view.grip);
+    if (!same) memset(view.hand, 0, sizeof view.hand);
     close_sides(view.side, view.body);
     memcpy(view.side, side, sizeof view.side);
     view.body = body;
     for (int s = 0; s < VIEW_SIDES; s++) {
-        view_side_hold(side[s], view.grip, true);
+        if (view_side_is_there(side[s]))
+            view_grips_hold(&side[s]->grips, &side[s]->play, view.hand, true);
         view_side_draw(side[s]);
     }
     if (!same) find_bounds();
@@ -154,7 +155,7 @@ const char *view_absent(int side)
 
 void view_step(int side, int steps)
 {
-    if (side_of(side)) view_side_step(side_of(side), steps, view.grip);
+    if (side_of(side)) view_side_step(side_of(side), steps, view.hand);
 }
 
 /* What the engines count, of all groups. */
@@ -291,47 +292,48 @@ const double *view_obstacle(int number)
 static void hold_all(void)
 {
     for (int s = 0; s < VIEW_SIDES; s++)
-        if (side_of(s)) view_side_hold(side_of(s), view.grip, false);
+        if (side_of(s)) view_grips_hold(&side_of(s)->grips, &side_of(s)->play, view.hand, false);
 }
 
 static bool is_held(int grip)
 {
     double middle[3];
     for (int s = 0; s < VIEW_SIDES; s++)
-        if (side_of(s) && view_side_grip(side_of(s), grip, middle)) return true;
+        if (side_of(s) && view_grips_middle(&side_of(s)->grips, &side_of(s)->play, grip, middle))
+            return true;
     return false;
 }
 
 int view_grab(int side, int vertex, double radius)
 {
     int grip = 0;
-    while (grip < VIEW_GRIPS && view.grip[grip].used) grip++;
-    if (grip == VIEW_GRIPS || !side_of(side)) return -1;
-    ViewGrip taken = {.used = true, .radius = radius};
+    while (grip < VIEW_HANDS && view.hand[grip].holds) grip++;
+    if (grip == VIEW_HANDS || !side_of(side)) return -1;
+    ViewHand taken = {.holds = true, .radius = radius};
     if (!view_side_vertex(side_of(side), vertex, &taken.instance, taken.rest)) return -1;
-    view.grip[grip] = taken;
+    view.hand[grip] = taken;
     hold_all();
     if (is_held(grip)) return grip;
-    view.grip[grip].used = false;
+    view.hand[grip].holds = false;
     return -1;
 }
 
 void view_drag(int grip, double x, double y, double z)
 {
-    if (grip < 0 || grip >= VIEW_GRIPS || !view.grip[grip].used) return;
+    if (grip < 0 || grip >= VIEW_HANDS || !view.hand[grip].holds) return;
     if (!isfinite(x) || !isfinite(y) || !isfinite(z)) return;
-    memcpy(view.grip[grip].drag, (double[3]){x, y, z}, sizeof(double[3]));
+    memcpy(view.hand[grip].moved, (double[3]){x, y, z}, sizeof(double[3]));
 }
 
 void view_release(int grip)
 {
-    if (grip < 0 || grip >= VIEW_GRIPS || !view.grip[grip].used) return;
-    view.grip[grip].used = false;
+    if (grip < 0 || grip >= VIEW_HANDS || !view.hand[grip].holds) return;
+    view.hand[grip].holds = false;
     hold_all();
 }
 
 const double *view_grip(int side, int grip)
 {
-    bool held = side_of(side) && view_side_grip(side_of(side), grip, view.middle);
-    return held ? view.middle : NULL;
+    const ViewSide *of = side_of(side);
+    return of && view_grips_middle(&of->grips, &of->play, grip, view.middle) ? view.middle : NULL;
 }

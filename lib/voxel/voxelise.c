@@ -257,7 +257,7 @@ static SmCode search_cell(Search *s, SmError *error)
         } else {
             SmCode code = try_lattice(s, cell, (double[3]){0, 0, 0}, error);
             if (code) return code;
-            if (miss(s) * 1000 <= s->wanted) return SM_OK;
+            if (miss(s) <= s->wanted / 1000) return SM_OK;
             same = narrow(s, s->last, &was_many) && i > 1;
         }
         double next = rounded(next_cell(s, same));
