@@ -159,7 +159,7 @@ if(NOT SHAPEBENCH_SANITIZE AND NOT SHAPEBENCH_CORE)
   endforeach()
   add_script_test(by_isa by_isa.py $<TARGET_FILE:shapebench> hashes penguin hand-sampled)
   add_script_test(report report/test_report.py $<TARGET_FILE:shapebench>)
-  add_script_test(page view/test_page.py $<TARGET_FILE:shapebench>)
+  add_script_test(page view/run_tests.py $<TARGET_FILE:shapebench>)
 endif()
 
 # These start first, of any instruction set and precision, so that none is alone in the end.

@@ -1,98 +1,21 @@
-#!/usr/bin/python3
-"""The page in a real browser, without a screen: opens every scene, looks at what is drawn, pulls, turns
-knobs, and holds the steps of the engines in it to those of the program.
-
-usage: test_page.py PROGRAM     exit code 77: there is no browser, nothing to drive it with, or no page
-"""
+"""The page: opens every scene, looks at what is drawn, pulls, turns knobs, and holds the steps of the engines in
+it to those of the program."""
 import os
-import pathlib
 import re
-import shutil
 import subprocess
-import sys
 import tempfile
-import unittest
 
-try:
-    import h5py
-    import numpy
-    from selenium import webdriver
-    from selenium.webdriver.chrome.service import Service
-    from selenium.webdriver.common.action_chains import ActionChains
-except ImportError as missing:
-    print(f"skipped: no {missing.name}: install python3-selenium")
-    sys.exit(77)
+import h5py
+import numpy
+from selenium.webdriver.common.action_chains import ActionChains
 
-PROGRAM = pathlib.Path(sys.argv[1]).resolve()
-CHROMIUM, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
-for needed, package in ((CHROMIUM, "chromium"), (DRIVER, "chromium-driver"), (shutil.which("wasm-ld"), "lld"),
-                        (shutil.which("llvm-ar"), "llvm"), (shutil.which("clang"), "clang")):
-    if not needed:
-        print(f"skipped: install {package}")
-        sys.exit(77)
-HERE = pathlib.Path(__file__).resolve().parent
-SIDES = ("fastlsm", "octree")
+from page_case import PROGRAM, SIDES, PageCase
+
 SCENES = ("hand-lattice", "hand-sampled", "penguin", "infant-bones", "liver", "flowers", "beam", "statue-shell",
           "penguins-collide")
 
 
-def browser(width=1000, height=640):
-    options = webdriver.ChromeOptions()
-    options.binary_location = CHROMIUM
-    for argument in ("--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--hide-scrollbars",
-                     "--enable-unsafe-swiftshader", f"--window-size={width},{height}"):
-        options.add_argument(argument)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    driver = webdriver.Chrome(service=Service(DRIVER), options=options)
-    driver.set_script_timeout(120)
-    return driver
-
-
-class Page(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        page = pathlib.Path(cls.folder.name) / "page.html"
-        made = subprocess.run([HERE / "view", "hand", "-o", page], stdin=subprocess.DEVNULL)
-        if made.returncode == 3:
-            raise unittest.SkipTest("what the page is built with is not here")
-        made.check_returncode()
-        cls.driver = browser()
-        cls.driver.get(page.as_uri())
-        cls.ask("await shapebench.ready; shapebench.pause()")
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.driver.quit()
-        cls.folder.cleanup()
-
-    @classmethod
-    def ask(cls, body, *values):
-        """What the body of an asynchronous function returns, in the page."""
-        answer = cls.driver.execute_async_script(
-            "const done = arguments[arguments.length - 1], values = [...arguments].slice(0, -1);"
-            f"(async () => {{ {body} }})().then((value) => done({{ value }}), "
-            "(error) => done({ error: String(error.stack || error) }))", *values)
-        if "error" in answer:
-            raise AssertionError(answer["error"])
-        return answer.get("value")
-
-    def open(self, name):
-        refused = self.ask("const e = shapebench.engine; const no = await shapebench.open("
-                           "e.sceneText(values[0]), false); shapebench.pause(); return no", name)
-        self.assertFalse(refused, f"{name}: {refused}")
-        self.driver.find_element("id", "look").click()  # all of it in the picture
-
-    def points(self, side):
-        flat = self.ask("return Array.from(shapebench.engine.surface(values[0]).points)", side)
-        return numpy.array(flat).reshape(-1, 3)
-
-    def figure(self, side, name):
-        return self.ask("return shapebench.engine.figure(values[0], values[1])", side, name)
-
-    def tearDown(self):
-        self.assertEqual(self.driver.get_log("browser"), [], "messages on the console")
-
+class Page(PageCase):
     def test_scenes_draw(self):
         """Where a vertex of the surface is projected, the picture has the body's colour."""
         self.assertLessEqual(set(SCENES), set(self.ask("return shapebench.engine.sceneNames()")))
@@ -267,7 +190,3 @@ for (let i = 0; i < values[0]; i++) {
 held.forEach((grip) => e.release(grip));
 return [0, 1].every((side) => e.surface(side).points.every(Number.isFinite));
 """
-
-if __name__ == "__main__":
-    ran = unittest.main(argv=sys.argv[:1], exit=False).result
-    sys.exit(77 if ran.skipped and ran.wasSuccessful() else not ran.wasSuccessful())

@@ -1,0 +1,94 @@
+"""What tests of the page share: one page, with the hand in it, in a real browser without a screen."""
+import atexit
+import functools
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+try:
+    import numpy
+    from selenium import webdriver
+    from selenium.webdriver.chrome.service import Service
+except ImportError as missing:
+    print(f"skipped: no {missing.name}: install python3-selenium and python3-numpy")
+    sys.exit(77)
+
+CHROMIUM, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
+for needed, package in ((CHROMIUM, "chromium"), (DRIVER, "chromium-driver"), (shutil.which("wasm-ld"), "lld"),
+                        (shutil.which("llvm-ar"), "llvm"), (shutil.which("clang"), "clang")):
+    if not needed:
+        print(f"skipped: install {package}")
+        sys.exit(77)
+HERE = pathlib.Path(__file__).resolve().parent
+PROGRAM = pathlib.Path(sys.argv[1]).resolve()
+SIDES = ("fastlsm", "octree")
+
+
+def browser(width=1000, height=640):
+    options = webdriver.ChromeOptions()
+    options.binary_location = CHROMIUM
+    for argument in ("--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--hide-scrollbars",
+                     "--enable-unsafe-swiftshader", f"--window-size={width},{height}"):
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    driver = webdriver.Chrome(service=Service(DRIVER), options=options)
+    driver.set_script_timeout(120)
+    return driver
+
+
+def make_page(page, *what):
+    """Makes a page as a user does; where its packages are missing, the test is skipped."""
+    made = subprocess.run([HERE / "view", *what, "-o", page], stdin=subprocess.DEVNULL)
+    if made.returncode == 3:
+        raise unittest.SkipTest("what the page is built with is not here")
+    made.check_returncode()
+
+
+@functools.cache
+def open_page():
+    """The browser with the page, the same for all tests."""
+    folder = tempfile.TemporaryDirectory()
+    atexit.register(folder.cleanup)
+    page = pathlib.Path(folder.name) / "page.html"
+    make_page(page, "hand")
+    driver = browser()
+    atexit.register(driver.quit)
+    driver.get(page.as_uri())
+    return driver
+
+
+class PageCase(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.driver = open_page()
+        cls.ask("await shapebench.ready; shapebench.pause()")
+
+    @classmethod
+    def ask(cls, body, *values):
+        """What the body of an asynchronous function returns, in the page."""
+        answer = cls.driver.execute_async_script(
+            "const done = arguments[arguments.length - 1], values = [...arguments].slice(0, -1);"
+            f"(async () => {{ {body} }})().then((value) => done({{ value }}), "
+            "(error) => done({ error: String(error.stack || error) }))", *values)
+        if "error" in answer:
+            raise AssertionError(answer["error"])
+        return answer.get("value")
+
+    def open(self, name):
+        refused = self.ask("const e = shapebench.engine; const no = await shapebench.open("
+                           "e.sceneText(values[0]), false); shapebench.pause(); return no", name)
+        self.assertFalse(refused, f"{name}: {refused}")
+        self.driver.find_element("id", "look").click()  # all of it in the picture
+
+    def points(self, side):
+        flat = self.ask("return Array.from(shapebench.engine.surface(values[0]).points)", side)
+        return numpy.array(flat).reshape(-1, 3)
+
+    def figure(self, side, name):
+        return self.ask("return shapebench.engine.figure(values[0], values[1])", side, name)
+
+    def tearDown(self):
+        self.assertEqual(self.driver.get_log("browser"), [], "messages on the console")
