@@ -1,9 +1,12 @@
 # The page's module: what bench/view exports, with all that plays a scene, for WebAssembly. Of bench/ it
 # takes no more than that, and of libraries libconfig's sources, whose folder SHAPEBENCH_VIEW names.
 
-set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS bench/view/view.h)
-file(STRINGS bench/view/view.h exports REGEX "^[a-z ]+[*]?view_[a-z_]+\\(")
-list(TRANSFORM exports REPLACE "^[a-z ]+[*]?(view_[a-z_]+)\\(.*" "-Wl,--export=\\1")
+foreach(header bench/view/view.h bench/view/given.h)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${header})
+  file(STRINGS ${header} declared REGEX "^[a-z ]+[*]?view_[a-z_]+\\(")
+  list(TRANSFORM declared REPLACE "^[a-z ]+[*]?(view_[a-z_]+)\\(.*" "-Wl,--export=\\1")
+  list(APPEND exports ${declared})
+endforeach()
 
 include(scripts/embed.cmake) # builtin.c
 set(libconfig grammar libconfig scanctx scanner strbuf)
@@ -11,7 +14,7 @@ list(TRANSFORM libconfig REPLACE "(.+)" "${SHAPEBENCH_VIEW}/lib/\\1.c")
 set_source_files_properties(${libconfig} PROPERTIES COMPILE_OPTIONS -w)
 
 sources_of(view_sources bench/view/*.c)
-list(APPEND view_sources bench/engines.c lib/public/skin.c ${CMAKE_BINARY_DIR}/builtin.c)
+list(APPEND view_sources bench/engines.c lib/public/skin.c lib/mesh/polygon.c ${CMAKE_BINARY_DIR}/builtin.c)
 foreach(noun scene/scene scene/scene_settings scene/body scene/memory scene/nearest scene/blades
     settings/setting settings/config_file system/suggest system/quote
     play/runner play/body_group play/carrier play/playback)

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "../scene/builtin.h"
+#include "given.h"
 #include "side.h"
 
 static struct {
@@ -112,6 +113,20 @@ static SmCode check_size(const BenchScene *scene, SmError *error)
                    wanted, scene->instances);
 }
 
+/* Of the program's shapes, or of the mesh that was given. A page takes fewer particles rather than
+ * none where so many take too large a lattice. */
+static SmCode make_body(BenchScene *scene, BenchBody *body, SmError *error)
+{
+    SmMesh mesh;
+    scene->voxel.fewer = true;
+    if (scene->vertex_mass[0])
+        return sm_fail(error, SM_INPUT,
+                       "scene: 'vertex_mass' names a file of masses, and a page takes none: give "
+                       "'density'");
+    SmCode code = view_given_load(scene->mesh, &mesh, error);
+    return code ? code : bench_body_create(scene, &mesh, body, error);
+}
+
 int view_open(int bytes, int keep)
 {
     static const char *const engine[VIEW_SIDES] = {"fastlsm", "octree"};
@@ -122,7 +137,7 @@ int view_open(int bytes, int keep)
         return refuse(&error);
     BenchBody *body = sm_alloc(1, sizeof *body);
     ViewSide *side[VIEW_SIDES] = {NULL, NULL};
-    if (bench_body_of_scene(&scene, NULL, body, &error)) {
+    if (make_body(&scene, body, &error)) {
         free(body);
         return refuse(&error);
     }

@@ -8,10 +8,6 @@
 #include <string.h>
 #include <strings.h>
 
-#include "../box.h"
-
-static const double far_away = 8; /* times the longest side of the box */
-
 typedef enum { OBJ, STL, PLY, OFF } Format;
 
 /* Goes through the lines and says which are vertices. */
@@ -126,13 +122,7 @@ static bool find_offset(const char *text, size_t size, Format format, double off
         if (lines.bad || (place && !read_position(&lines, place, position))) return false;
         if (place) sm_box_add(&box, position);
     }
-    double distance = 0;
-    for (int a = 0; a < 3; a++) {
-        offset[a] = 0.5 * box.low[a] + 0.5 * box.high[a];
-        distance = fmax(distance, fabs(offset[a]));
-    }
-    return box.low[0] <= box.high[0] && distance > far_away * sm_box_longest(&box) &&
-           isfinite(distance);
+    return sm_is_far(&box, offset);
 }
 
 static bool known_format(const char *text, const char *suffix, Format *format)

@@ -12,10 +12,24 @@
 
 #include <stddef.h>
 
+#include "../box.h"
+
+/* Does what is in the box lie further from the origin than eight times the box's longest side?
+ * `middle` is the box's. Not where a number is not finite. */
+static inline bool sm_is_far(const SmBox *box, double middle[3])
+{
+    double distance = 0;
+    for (int d = 0; d < 3; d++) {
+        middle[d] = 0.5 * box->low[d] + 0.5 * box->high[d];
+        distance = fmax(distance, fabs(middle[d]));
+    }
+    return box->low[0] <= box->high[0] && distance > 8 * sm_box_longest(box) && isfinite(distance);
+}
+
 /* A copy of the mesh file `text` (with a NUL after its `size` bytes) whose vertices are moved by
- * -offset, when they lie further from the origin than eight times their box's longest side. NULL
- * when they do not, when `suffix` (without dot, any case) is not one of the formats above, when the
- * text is not what that format promises, or without memory. The caller frees it. O(size). */
+ * -offset, when they lie far from the origin. NULL when they do not, when `suffix` (without dot,
+ * any case) is not one of the formats above, when the text is not what that format promises, or
+ * without memory. The caller frees it. O(size). */
 char *sm_recentre(const char *text, size_t size, const char *suffix, size_t *new_size,
                   double offset[3]);
 
