@@ -24,7 +24,8 @@ export class App {
         this.panel = new Panel(this);
         this.hands = new Hands(this);
         this.playing = true;
-        Object.assign(this, { text: '', busy: false, stale: true, now: 0, last: 0, shown: 0, cost: 0 });
+        Object.assign(this, { busy: false, stale: true, now: 0, last: 0, shown: 0, cost: 0 });
+        this.text = this.awaited = '';
     }
 
     pinning() { return $('pin').getAttribute('aria-pressed') === 'true'; }
@@ -80,10 +81,13 @@ export class App {
         return `The engine stopped and has begun anew: ${trap.message}`;
     }
 
-    // Opens another scene and looks at it, as open() does; the menu says which one is open now.
+    // Opens another scene and looks at it, as open() does; the menu says which one is open now. One whose
+    // mesh the page has not got is awaited.
     async visit(text) {
         const refused = await this.open(text, false);
         this.say(refused);
+        if (refused && this.engine.given.lacks(text)) this.awaited = text;
+        if (!refused && text === this.awaited) this.awaited = '';
         if (!refused) this.original = text;
         if (!refused) this.frame();
         const { engine } = this;
@@ -231,11 +235,13 @@ export class App {
     async copyLink() {
         this.fragment = `#${await packScene(this.text)}`;
         location.hash = this.fragment;
+        const mesh = this.engine.given.named(this.text);
+        const without = mesh && ` It does not carry the mesh: who opens it drops ${mesh} on the page then.`;
         try {
             await navigator.clipboard.writeText(location.href);
-            this.say('Link copied.');
+            this.say(`Link copied.${without}`);
         } catch {
-            this.say('The link is in the address bar.');
+            this.say(`The link is in the address bar.${without}`);
         }
     }
 

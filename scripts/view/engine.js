@@ -1,5 +1,6 @@
 // engine.js - the two engines in WebAssembly (bench/view/view.h): what they import, their strings,
 // and their numbers as arrays. A side is 0, FastLSM, or 1, the octree.
+import { Given } from 'view/given';
 
 export const SIDES = ['FastLSM', 'Octree'];
 export const STAGES = ['fast sum', 'shape matching', 'polar', 'damping', 'other'];
@@ -48,6 +49,7 @@ export class Engine {
     // Makes the engines of the module's bytes.
     static async create(bytes) {
         const engine = new Engine();
+        engine.given = new Given(engine);
         engine.module = await WebAssembly.compile(bytes);
         await engine.restart();
         return engine;
@@ -61,6 +63,7 @@ export class Engine {
             (imports[module] ??= {})[name] = system[name] ?? (() => ENOSYS);
         this.call = (await WebAssembly.instantiate(this.module, imports)).exports;
         this.held = new Set();
+        this.given.forget();
         this.call._initialize?.();
     }
 
@@ -87,6 +90,8 @@ export class Engine {
 
     // '', or the line that says why nothing has changed. With `keep` grips stay, too.
     open(text, keep) {
+        const refused = this.given.give(this.given.named(text));
+        if (refused) return refused;
         if (this.call.view_open(this.give(text).length, keep ? 1 : 0))
             return this.string(this.call.view_message());
         if (!keep) this.held.clear();

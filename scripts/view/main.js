@@ -1,6 +1,7 @@
 // main.js - starts the page: engines, buttons, the first scene, the loop of frames, and what tests use.
 import { App } from 'view/app';
 import { Engine } from 'view/engine';
+import { Files } from 'view/files';
 import { fromBase64, saveFile, unzip } from 'view/share';
 
 const FIRST_SCENE = 'hand';
@@ -28,14 +29,21 @@ function wire(app) {
     window.addEventListener('hashchange', () => app.openLink());
 }
 
-// The link's scene, else the page's own, else the first; what was refused is said.
-async function openFirst(app, own) {
-    let refused = await app.openLink();
-    const others = refused === '' ? [] : [own, app.engine.sceneText(FIRST_SCENE)].filter(Boolean);
-    for (const text of others) {
-        const why = await app.visit(text);
+// The link's scene, else the page's own, or that which drops its mesh, else the first; what was refused is
+// said. The page's mesh may be the link's, too.
+async function openFirst(app, { scene, mesh }) {
+    let [name, refused] = ['', ''];
+    try {
+        if (mesh) name = app.files.take(mesh.name, await unzip(fromBase64(mesh.gzip), 'gzip'));
+    } catch (error) {
+        refused = `${mesh.name}: ${error.message}`;
+    }
+    const ways = [() => app.openLink(), () => app.visit(app.engine.sceneText(FIRST_SCENE))];
+    if (scene || name) ways.splice(1, 0, () => app.files.show(scene, name));
+    for (const open of ways) {
+        const why = await open();
         refused ||= why;
-        if (!why) break;
+        if (why === '') break;
     }
     app.say(refused);
 }
@@ -45,7 +53,8 @@ async function start() {
     const engine = await Engine.create(await unzip(fromBase64($('wasm').textContent), 'gzip'));
     const app = new App(engine, data.shaders);
     wire(app);
-    await openFirst(app, data.scene);
+    app.files = new Files(app);
+    await openFirst(app, data);
     const loop = (now) => { app.tick(now); requestAnimationFrame(loop); };
     requestAnimationFrame(loop);
     return app;
@@ -57,6 +66,7 @@ window.shapebench = {
         Object.assign(window.shapebench, {
             engine: app.engine,
             camera: app.camera,
+            files: app.files,
             advance: (frames) => app.advance(frames),
             pause: () => app.pause(true),
             text: () => app.text,
