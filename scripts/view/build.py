@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """build.py - writes the page as one file that asks for nothing else, from this folder and the engines.
 
-    build.py WASM OUT.html [SCENE_TEXT_FILE]
+    build.py WASM OUT.html SCENE_TEXT_FILE MESH_FILE
 
-With a scene's text the page opens with it. The page runs from file://, where modules cannot import
+The page opens with that scene and its mesh, or drops a mesh alone; '' stands for none. The page runs from file://, where modules cannot import
 each other by path: each is a data: URL with a name in the import map."""
 import base64
 import contextlib
@@ -26,7 +26,7 @@ def as_json(value):
     return json.dumps(value, ensure_ascii=False).replace('<', '\\u003c')
 
 
-def build(wasm, scene):
+def build(wasm, scene, mesh):
     modules = {f'view/{path.stem}': f'data:text/javascript;base64,{encode(path.read_bytes())}'
                for path in sorted(HERE.glob('*.js'))}
     shaders = {path.name: path.read_text() for path in sorted(HERE.iterdir())
@@ -34,23 +34,34 @@ def build(wasm, scene):
     parts = {
         '@STYLE@': (HERE / 'page.css').read_text().strip(),
         '@IMPORTS@': as_json({'imports': modules}),
-        '@DATA@': as_json({'shaders': shaders, 'scene': scene}),
+        '@DATA@': as_json({'shaders': shaders, 'scene': scene, 'mesh': mesh}),
         '@WASM@': encode(gzip.compress(wasm, mtime=0)),
     }
     page = (HERE / 'page.html').read_text(encoding='utf-8')
     return re.sub('|'.join(parts), lambda mark: parts[mark.group()], page)
 
 
+def read(path, how):
+    """What `how` makes of a file; '' of no file."""
+    if not path:
+        return ''
+    try:
+        return how(pathlib.Path(path))
+    except (OSError, ValueError) as error:
+        print(f'{path}: cannot be read: {error}', file=sys.stderr)
+        sys.exit(3)
+
+
+def read_mesh(path):
+    return {'name': path.name, 'gzip': encode(gzip.compress(path.read_bytes(), mtime=0))}
+
+
 def main(arguments):
-    if len(arguments) not in (2, 3):
+    if len(arguments) != 4:
         sys.exit(__doc__)
     wasm, out = pathlib.Path(arguments[0]), pathlib.Path(arguments[1])
-    try:
-        scene = pathlib.Path(arguments[2]).read_text(encoding='utf-8') if len(arguments) == 3 else ''
-    except (OSError, ValueError) as error:
-        print(f'{arguments[2]}: cannot be read as text (UTF-8): {error}', file=sys.stderr)
-        sys.exit(3)
-    page = build(wasm.read_bytes(), scene)
+    scene = read(arguments[2], lambda path: path.read_text(encoding='utf-8'))
+    page = build(wasm.read_bytes(), scene, read(arguments[3], read_mesh))
     new = f'{out}.{os.getpid()}.tmp'
     try:
         pathlib.Path(new).write_text(page, encoding='utf-8')
