@@ -69,15 +69,24 @@ bool bench_playback_changes(const BenchPlayback *play)
     return false;
 }
 
-SmCode bench_playback_change(BenchPlayback *play, SmError *error)
+static SmCode change_until(BenchPlayback *play, double to, SmError *error)
 {
-    const BenchScene *scene = play->scene;
-    double to = play->time + scene->steps_per_frame * scene->params.h;
     SmCode code = SM_OK;
     for (int i = 0; i < play->count && !code; i++)
         if (bench_group_changes(&play->group[i]))
             code = bench_group_frame(&play->group[i], play->time, to, error);
     return code;
+}
+
+SmCode bench_playback_change(BenchPlayback *play, SmError *error)
+{
+    const BenchScene *scene = play->scene;
+    return change_until(play, play->time + scene->steps_per_frame * scene->params.h, error);
+}
+
+SmCode bench_playback_change_now(BenchPlayback *play, SmError *error)
+{
+    return change_until(play, play->time, error);
 }
 
 void bench_playback_prepare(BenchPlayback *play)

@@ -29,6 +29,9 @@ bool bench_playback_changes(const BenchPlayback *play);
 /* What the scene changes before the steps of the next frame. */
 SmCode bench_playback_change(BenchPlayback *play, SmError *error);
 
+/* The same of what is due at this moment alone, between two frames. */
+SmCode bench_playback_change_now(BenchPlayback *play, SmError *error);
+
 /* One step of all bodies: first what moves handles and pushes, then the engines. */
 void bench_playback_prepare(BenchPlayback *play);
 void bench_playback_advance(BenchPlayback *play, SmLaps *laps);

@@ -25,14 +25,23 @@ static void suit(BenchScene *scene, const BenchEngine *engine)
 }
 
 void view_side_create(const BenchScene *scene, const BenchBody *body, const char *engine,
-                      ViewSide *side)
+                      const ViewAllowed *allowed, ViewSide *side)
 {
+    static const ViewAllowed nothing;
+    const SmEngineType *type = bench_engine(engine)->type[0];
     double start = sm_now();
     *side = (ViewSide){.scene = *scene};
     suit(&side->scene, bench_engine(engine));
-    if (bench_playback_create(&side->scene, body, bench_engine(engine)->type[0], 1, 1, &side->play,
-                              &side->absent))
-        return;
+    BenchScene plain = side->scene;
+    view_tools_add(&side->scene, allowed, type->refines, &side->tools);
+    SmCode code = bench_playback_create(&side->scene, body, type, 1, 1, &side->play, &side->absent);
+    if (code && (side->tools.blade >= 0 || side->tools.fingers > 0)) { /* perhaps without them */
+        side->scene = plain;
+        view_tools_add(&side->scene, &nothing, false, &side->tools);
+        code = bench_playback_create(&side->scene, body, type, 1, 1, &side->play, &side->absent);
+    }
+    if (code) return;
+    side->absent = (SmError){0};
     view_grips_create(&side->play, &side->grips);
     side->build_seconds = sm_now() - start;
     view_side_draw(side);
@@ -66,45 +75,85 @@ bool view_side_is_whole(const ViewSide *side)
     return true;
 }
 
+/* The group that a body of the scene is in, and its number there. */
+static BenchGroup *find_body(const ViewSide *side, long instance, long *number)
+{
+    for (int g = 0; g < side->play.count; g++) {
+        BenchGroup *group = &side->play.group[g];
+        for (*number = 0; *number < group->body.instances; ++*number)
+            if (group->instance[*number] == instance) return group;
+    }
+    return NULL;
+}
+
 bool view_side_is_like(const ViewSide *side, const ViewSide *other)
 {
-    if (side->play.count != other->play.count) return false;
-    for (int g = 0; g < side->play.count; g++)
-        if (side->play.group[g].runner.particles != other->play.group[g].runner.particles)
+    if (view_side_is_there(side) != view_side_is_there(other)) return false;
+    if (side->scene.instances != other->scene.instances) return false;
+    for (long i = 0; view_side_is_there(side) && i < side->scene.instances; i++) {
+        long number;
+        if (find_body(side, i, &number)->runner.count != find_body(other, i, &number)->runner.count)
             return false;
+    }
     return true;
+}
+
+/* A field of both sides' particles, from body to body: these may be grouped otherwise. */
+static void copy_field(ViewSide *side, const ViewSide *from, SmField field)
+{
+    for (int g = 0; g < side->play.count; g++) {
+        const BenchGroup *to = &side->play.group[g];
+        size_t count = (size_t)to->runner.count, number;
+        double(*value)[3] = sm_alloc((size_t)to->runner.particles, sizeof *value);
+        for (long i = 0; i < to->body.instances; i++) {
+            const BenchRunner *was = &find_body(from, to->instance[i], (long *)&number)->runner;
+            double(*all)[3] = sm_alloc((size_t)was->particles, sizeof *all);
+            was->type->get(was->engine, field, all);
+            memcpy(value + (size_t)i * count, all + number * count, count * sizeof *value);
+            free(all);
+        }
+        to->runner.type->set(to->runner.engine, field, (const double(*)[3])value);
+        free(value);
+    }
 }
 
 void view_side_go_on(ViewSide *side, const ViewSide *from)
 {
-    for (int g = 0; g < side->play.count; g++) {
-        BenchRunner *to = &side->play.group[g].runner;
-        const BenchRunner *was = &from->play.group[g].runner;
-        double(*value)[3] = sm_alloc((size_t)to->particles, sizeof *value);
-        for (int field = SM_POSITION; field <= SM_VELOCITY; field++) {
-            was->type->get(was->engine, (SmField)field, value);
-            to->type->set(to->engine, (SmField)field, (const double(*)[3])value);
-        }
-        free(value);
-        to->time = was->time;
-    }
+    copy_field(side, from, SM_POSITION);
+    copy_field(side, from, SM_VELOCITY);
+    for (int g = 0; g < side->play.count; g++) side->play.group[g].runner.time = from->play.time;
     side->play.time = from->play.time;
     side->steps = from->steps;
+    memcpy(side->tools.wind, from->tools.wind, sizeof side->tools.wind);
     memcpy(side->grips.followed, from->grips.followed, sizeof side->grips.followed);
 }
 
 /* ---- steps */
 
-/* What the scene does before the steps of a frame. What cannot be done is left; particles that are
- * split or merged have other numbers, and what is held is found again. */
+/* After a change of the body: particles that are split or merged have other numbers, and what is
+ * held is found again. */
+static void follow_change(ViewSide *side, const ViewHand *hand)
+{
+    if (view_grips_are_lost(&side->grips, &side->play))
+        view_grips_hold(&side->grips, &side->play, hand, true);
+    if (bench_playback_split(&side->play)) free_surface(side);
+}
+
+/* What the scene does before the steps of a frame. What cannot be done is left. */
 static void change(ViewSide *side, const ViewHand *hand)
 {
     SmError left;
     if (!bench_playback_changes(&side->play)) return;
     bench_playback_change(&side->play, &left);
-    if (view_grips_are_lost(&side->grips, &side->play))
-        view_grips_hold(&side->grips, &side->play, hand, true);
-    if (bench_playback_split(&side->play)) free_surface(side);
+    follow_change(side, hand);
+}
+
+bool view_side_cut(ViewSide *side, const double a[3], const double b[3], const ViewHand *hand)
+{
+    if (side->tools.blade < 0) return false;
+    view_tools_cut(&side->tools, &side->scene, &side->play, a, b);
+    follow_change(side, hand);
+    return true;
 }
 
 void view_side_step(ViewSide *side, int steps, const ViewHand *hand)
@@ -116,6 +165,7 @@ void view_side_step(ViewSide *side, int steps, const ViewHand *hand)
         if (side->steps++ % side->scene.steps_per_frame == 0) change(side, hand);
         view_grips_follow(&side->grips, hand, 1.0 / (steps - i));
         bench_playback_prepare(&side->play);
+        view_tools_blow(&side->tools, &side->play);
         sm_lap(&laps, SM_OTHER);
         bench_playback_advance(&side->play, &laps);
     }

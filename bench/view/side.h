@@ -4,12 +4,14 @@
 #define BENCH_SIDE_H
 
 #include "grips.h"
+#include "tools.h"
 
 typedef struct {
     BenchScene scene;
     BenchPlayback play; /* group NULL: the side is not there, as `absent` says */
     SmError absent;
     ViewGrips grips;
+    ViewTools tools;
     long steps, timed; /* in all, and since the laps were cleared */
     double lap[SM_STAGES];
     double build_seconds;
@@ -22,10 +24,10 @@ typedef struct {
 } ViewSide;
 
 /* Plays the scene with `engine` on the body, as near to what it says as that engine can: what it
- * does not do is left out (touches, creep, a strain limit). The scene is copied, the body kept.
- * Where the engine refuses, the side is absent. */
+ * does not do is left out (touches, creep, a strain limit), and of what hands are `allowed`, too.
+ * The scene is copied, the body kept. Where the engine refuses, the side is absent. */
 void view_side_create(const BenchScene *scene, const BenchBody *body, const char *engine,
-                      ViewSide *side);
+                      const ViewAllowed *allowed, ViewSide *side);
 void view_side_free(ViewSide *side);
 
 bool view_side_is_there(const ViewSide *side);
@@ -33,7 +35,7 @@ bool view_side_is_there(const ViewSide *side);
 /* May another side go on where this one is? Not where material has been cut or has broken. */
 bool view_side_is_whole(const ViewSide *side);
 
-/* Has it groups of as many particles as another side? */
+/* Has it bodies of as many particles as another side? */
 bool view_side_is_like(const ViewSide *side, const ViewSide *other);
 
 /* Positions, velocities and time of another side that it is like. */
@@ -42,6 +44,9 @@ void view_side_go_on(ViewSide *side, const ViewSide *from);
 /* Steps, with the scene's changes before those of each frame. What is held follows the hands in
  * even parts, so that it has their velocity when it is let go. */
 void view_side_step(ViewSide *side, int steps, const ViewHand *hand);
+
+/* Moves the blade, at once (tools.h), and finds what hands hold again; false: it may not cut. */
+bool view_side_cut(ViewSide *side, const double a[3], const double b[3], const ViewHand *hand);
 
 /* The body and the place at rest of a vertex that is drawn; false: there is none such. */
 bool view_side_vertex(const ViewSide *side, long vertex, long *instance, double rest[3]);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../../lib/test_frame.h"
+#include "../../lib/vector.h"
 #include "../engines.h"
 #include "side.h"
 #include "view.h"
@@ -211,6 +212,102 @@ TEST(hands_hold_through_a_cut)
     const char *text = view_scene_text("liver");
     assert_int_equal(opened(text, 1), 0);
     assert_true(view_figure(side, VIEW_TIME) == 0);
+}
+
+/* The vertex that is the most in a direction. */
+static int utmost(int side, int axis, double sign)
+{
+    long most = 0;
+    for (long v = 0; v < view_vertices(side); v++)
+        if (sign * view_points(side)[3 * v + axis] > sign * view_points(side)[3 * most + axis])
+            most = v;
+    return (int)most;
+}
+
+/* A stroke through both bodies cuts them in two: what hung falls, and the surfaces stay closed. */
+TEST(a_stroke_cuts_both_sides)
+{
+    const char *text = view_scene_text("liver");
+    open_scene(text);
+    view_step(0, 20);
+    view_step(1, 20);
+    double before[3], after[3], time = view_figure(0, VIEW_TIME);
+    vertex(0, 7, before);
+    view_allow_cut();
+    assert_int_equal(opened(text, 1), 0); /* made for it, and goes on */
+    assert_true(view_figure(0, VIEW_TIME) == time);
+    vertex(0, 7, after);
+    for (int d = 0; d < 3; d++) assert_true(fabs(after[d] - before[d]) < 1e-6);
+    double fallen[2], cell = view_figure(0, VIEW_CELL);
+    int low = utmost(0, 1, -1), triangles[2];
+    for (int side = 0; side < VIEW_SIDES; side++) {
+        assert_true(view_may_cut(side));
+        vertex(side, low, before);
+        fallen[side] = before[1];
+        triangles[side] = view_triangles(side);
+    }
+    /* across what hangs, below its middle */
+    const double *box = view_bounds();
+    double x = box[0] - 5 * cell, y = 0.35 * box[1] + 0.65 * box[4];
+    for (; x < box[3] + 5 * cell; x += 2 * cell) view_cut(x, y, box[2] - 1, x, y, box[5] + 1);
+    view_lift();
+    for (int side = 0; side < VIEW_SIDES; side++) {
+        view_step(side, 60);
+        vertex(side, low, after);
+        if (!(after[1] < fallen[side] - 2 * cell))
+            fail_msg("side %d: %g cells", side, (fallen[side] - after[1]) / cell);
+        assert_true(view_triangles(side) > triangles[side]);
+    }
+    assert_int_equal(opened(text, 0), 0); /* and until then alone */
+    assert_false(view_may_cut(0) || view_may_cut(1));
+}
+
+/* A touch splits the octree's cells there while it lasts, of one body of several; the others, and
+ * the motion of all, go on. */
+TEST(a_touch_refines)
+{
+    const char *text = view_scene_text("flowers");
+    open_scene(text);
+    int side = VIEW_OCTREE, top = utmost(side, 1, 1);
+    int body = view_body(side, top);
+    double nodes = view_figure(side, VIEW_PARTICLES), before[3], after[3];
+    view_step(side, 5);
+    vertex(side, top, before);
+    assert_false(view_may_touch(side, body));
+    view_allow_touch(body);
+    assert_int_equal(opened(text, 1), 0);
+    assert_true(view_may_touch(side, body));
+    assert_false(view_may_touch(VIEW_LATTICE, body));
+    assert_true(view_figure(side, VIEW_PARTICLES) == nodes);
+    int same = -1; /* the body has another place in the arrays */
+    for (int v = 0; v < view_vertices(side) && same < 0; v++) {
+        for (int d = 0; d < 3; d++) after[d] = view_points(side)[3 * v + d];
+        if (view_body(side, v) == body && sm_square_between(before, after) < 1e-12) same = v;
+    }
+    assert_true(same >= 0);
+    view_touch(side, same, 2 * view_figure(side, VIEW_CELL));
+    view_step(side, 5);
+    assert_true(view_figure(side, VIEW_PARTICLES) > nodes);
+    view_leave();
+    view_step(side, 35); /* the scene's own touch is yet to come */
+    assert_true(view_figure(side, VIEW_PARTICLES) == nodes);
+}
+
+/* The wind moves what is free as far on both sides. */
+TEST(wind_pushes_both_sides)
+{
+    open_scene("mesh = \"shape:block\"; particles = 700; octree = { levels = 1; };");
+    double h = view_figure(0, VIEW_H), was[3], now[3];
+    for (int side = 0; side < VIEW_SIDES; side++) {
+        view_blow(2, 0, -1);
+        vertex(side, 3, was);
+        view_step(side, 100);
+        vertex(side, 3, now);
+        double t = 100 * h;
+        assert_true(fabs(now[0] - was[0] - t * t) < 0.05 * t * t);
+        assert_true(fabs(now[2] - was[2] + t * t / 2) < 0.05 * t * t);
+        view_blow(0, 0, 0);
+    }
 }
 
 /* A handle whose only node is split away holds nothing any more, and the rest goes on. */

@@ -15,6 +15,7 @@ static struct {
     BenchBody *body;
     ViewSide *side[VIEW_SIDES];
     ViewHand hand[VIEW_HANDS];
+    ViewAllowed allowed;
     double bounds[6], middle[3], obstacle[8];
 } view;
 
@@ -135,6 +136,8 @@ int view_open(int bytes, int keep)
     if (bench_scene_parse(view.text, (size_t)bytes, "scene", &scene, &error) ||
         check_size(&scene, &error))
         return refuse(&error);
+    static const ViewAllowed nothing;
+    const ViewAllowed *allowed = keep ? &view.allowed : &nothing;
     BenchBody *body = sm_alloc(1, sizeof *body);
     ViewSide *side[VIEW_SIDES] = {NULL, NULL};
     if (make_body(&scene, body, &error)) {
@@ -143,7 +146,7 @@ int view_open(int bytes, int keep)
     }
     for (int s = 0; s < VIEW_SIDES; s++) {
         side[s] = sm_alloc(1, sizeof *side[s]);
-        view_side_create(&scene, body, engine[s], side[s]);
+        view_side_create(&scene, body, engine[s], allowed, side[s]);
     }
     if (!view_side_is_there(side[VIEW_LATTICE]) && !view_side_is_there(side[VIEW_OCTREE])) {
         error = side[VIEW_LATTICE]->absent;
@@ -151,6 +154,7 @@ int view_open(int bytes, int keep)
         return refuse(&error);
     }
     view.message[0] = '\0';
+    if (!keep) view.allowed = nothing;
     replace(side, body, keep);
     return 0;
 }
@@ -351,4 +355,73 @@ const double *view_grip(int side, int grip)
 {
     const ViewSide *of = side_of(side);
     return of && view_grips_middle(&of->grips, &of->play, grip, view.middle) ? view.middle : NULL;
+}
+
+/* ---- what else hands do */
+
+void view_allow_cut(void)
+{
+    view.allowed.cut = true;
+}
+
+void view_allow_touch(int instance)
+{
+    if (instance >= 0 && instance < BENCH_MAX) view.allowed.touched[instance] = true;
+}
+
+int view_may_cut(int side)
+{
+    return side_of(side) && side_of(side)->tools.blade >= 0;
+}
+
+int view_may_touch(int side, int instance)
+{
+    return side_of(side) &&
+           view_tools_may_touch(&side_of(side)->tools, &side_of(side)->scene, instance);
+}
+
+void view_cut(double ax, double ay, double az, double bx, double by, double bz)
+{
+    const double a[3] = {ax, ay, az}, b[3] = {bx, by, bz};
+    for (int d = 0; d < 3; d++)
+        if (!isfinite(a[d]) || !isfinite(b[d])) return;
+    for (int s = 0; s < VIEW_SIDES; s++)
+        if (side_of(s)) view_side_cut(side_of(s), a, b, view.hand);
+}
+
+void view_lift(void)
+{
+    for (int s = 0; s < VIEW_SIDES; s++)
+        if (side_of(s)) view_tools_lift(&side_of(s)->tools, &side_of(s)->play);
+}
+
+int view_body(int side, int vertex)
+{
+    long instance;
+    double rest[3];
+    bool found = side_of(side) && view_side_vertex(side_of(side), vertex, &instance, rest);
+    return found ? (int)instance : -1;
+}
+
+void view_touch(int side, int vertex, double radius)
+{
+    long instance;
+    double rest[3];
+    if (!side_of(side) || !view_side_vertex(side_of(side), vertex, &instance, rest)) return;
+    for (int s = 0; s < VIEW_SIDES; s++)
+        if (side_of(s))
+            view_tools_touch(&side_of(s)->tools, &side_of(s)->scene, instance, rest, radius);
+}
+
+void view_leave(void)
+{
+    for (int s = 0; s < VIEW_SIDES; s++)
+        if (side_of(s)) view_tools_leave(&side_of(s)->tools, &side_of(s)->scene);
+}
+
+void view_blow(double x, double y, double z)
+{
+    if (!isfinite(x) || !isfinite(y) || !isfinite(z)) return;
+    for (int s = 0; s < VIEW_SIDES; s++)
+        if (side_of(s)) memcpy(side_of(s)->tools.wind, (double[3]){x, y, z}, sizeof(double[3]));
 }

@@ -84,4 +84,28 @@ void view_drag(int grip, double x, double y, double z);
 void view_release(int grip);
 const double *view_grip(int side, int grip); /* where its middle is now, [3]; NULL: released */
 
+/* What else hands do (tools.h). Bodies are made for it: what is allowed, a cut, or a touch of body
+ * number `instance`, holds from the next view_open() on, in which motion goes on with `keep`, until
+ * one without it. `view_may_...`: is it so now? Only of a body alone can be cut, only on an octree
+ * touched. */
+void view_allow_cut(void);
+void view_allow_touch(int instance);
+int view_may_cut(int side);
+int view_may_touch(int side, int instance);
+
+/* The blade of both sides, moved at once to the segment from a to b; then taken out. */
+void view_cut(double ax, double ay, double az, double bx, double by, double bz);
+void view_lift(void);
+
+/* The body that a vertex of a side belongs to, or -1. */
+int view_body(int side, int vertex);
+
+/* Touches the octree's body where the side's vertex is at rest, until another place is touched or
+ * it is left. */
+void view_touch(int side, int vertex, double radius);
+void view_leave(void);
+
+/* The wind on both sides: an acceleration, m/s^2. */
+void view_blow(double x, double y, double z);
+
 #endif
