@@ -84,6 +84,7 @@ void bench_group_sweep(BenchGroup *group, double from, double to, SmCut *cut)
     for (int i = 0; i < scene->cut_count; i++) {
         double blade[4][3];
         if (!bench_blade_moves(&scene->cut[i], from, to, blade)) continue;
+        if (group->blade[i].down) memcpy(blade, group->blade[i].end, sizeof group->blade[i].end);
         SmCarriers carriers = sm_skin_carriers(&group->skin, (const double(*)[3])blade);
         if (!group->blade[i].down)
             sm_blade_sweep(&group->blade[i], blade[0], blade[1], &carriers, cut);

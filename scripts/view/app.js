@@ -7,6 +7,7 @@ import { Meter } from 'view/meter';
 import { Panel } from 'view/panel';
 import { packScene, savePicture, unpackScene } from 'view/share';
 import { findStage } from 'view/shapes';
+import { Tools } from 'view/tools';
 
 const WORK_MS = 25; // of steps in a frame, at most
 const FRAME_MS = 1000 / 60; // faster screens do not make time run faster
@@ -22,6 +23,7 @@ export class App {
         this.picture = new Picture($('canvas'), shaders);
         this.meters = [new Meter(), new Meter()];
         this.panel = new Panel(this);
+        this.tools = new Tools(this);
         this.hands = new Hands(this);
         this.playing = true;
         Object.assign(this, { busy: false, stale: true, now: 0, last: 0, shown: 0, cost: 0 });
@@ -60,11 +62,15 @@ export class App {
         this.cost = 0;
         this.views.forEach((view, side) => {
             this.engine.clearStages(side);
-            this.picture.setSurface(side, this.engine.surface(side));
             view.querySelector('.absent').textContent = this.engine.absent(side);
         });
+        this.showSurfaces();
         this.panel.fill();
         this.panel.show(this.meters);
+    }
+
+    showSurfaces() {
+        for (const side of [0, 1]) this.picture.setSurface(side, this.engine.surface(side));
         this.changed();
     }
 
@@ -171,6 +177,7 @@ export class App {
         if (this.busy || !this.text || now - this.last < FRAME_MS - 1) return;
         this.last = Math.max(this.last, now - 2 * FRAME_MS) + FRAME_MS;
         try {
+            this.tools.frame();
             if (this.playing) this.play();
             if (this.stale) this.draw();
             if (!this.playing || now - this.shown < SHOW_MS) return;

@@ -150,6 +150,18 @@ export class Engine {
         this.held.delete(grip);
     }
 
+    // What else hands do (view.h): bodies are made for it by the next open() that keeps motion.
+    allowCut() { this.call.view_allow_cut(); }
+    allowTouch(body) { this.call.view_allow_touch(body); }
+    mayCut(side) { return this.call.view_may_cut(side) !== 0; }
+    mayTouch(side, body) { return this.call.view_may_touch(side, body) !== 0; }
+    cut(a, b) { this.call.view_cut(...a, ...b); }
+    lift() { this.call.view_lift(); }
+    body(side, vertex) { return this.call.view_body(side, vertex); }
+    touch(side, vertex, radius) { this.call.view_touch(side, vertex, radius); }
+    leave() { this.call.view_leave(); }
+    blow(wind) { this.call.view_blow(...wind); }
+
     // Where the held grips are on a side: [{ grip, point }].
     grips(side) {
         return [...this.held].flatMap((grip) => {

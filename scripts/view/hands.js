@@ -13,7 +13,7 @@ export class Hands {
         this.app = app;
         this.moved = new Map(); // of each grip: by how much it has been dragged
         this.pointers = new Map();
-        this.keyHold = null;
+        this.keyHold = this.keyUse = null;
         app.views.forEach((view, side) => this.listen(view, side));
         document.addEventListener('keydown', (event) => this.key(event));
     }
@@ -95,8 +95,12 @@ export class Hands {
     // All grips are gone: another scene is open.
     forget() {
         this.moved.clear();
-        this.keyHold = null;
-        for (const pointer of this.pointers.values()) pointer.hold = null;
+        this.keyUse?.use.end();
+        this.keyHold = this.keyUse = null;
+        for (const pointer of this.pointers.values()) {
+            pointer.use?.end();
+            pointer.use = pointer.hold = null;
+        }
     }
 
     unpin(side, event) {
@@ -108,10 +112,12 @@ export class Hands {
         view.setPointerCapture(event.pointerId);
         const place = this.place(event, view);
         const limit = (event.pointerType === 'touch' ? TOUCH_REACH : MOUSE_REACH) / place.half;
-        const alone = ![...this.pointers.values()].some((pointer) => !pointer.hold);
-        const hold = event.button === 0 && alone ? this.take(side, place, limit) : null;
+        const alone = ![...this.pointers.values()].some((pointer) => !pointer.hold && !pointer.use);
+        const works = event.button === 0 && alone;
+        const use = works ? this.app.tools.begin(side, place) : null;
+        const hold = works && !use ? this.take(side, place, limit) : null;
         const offset = hold && add(hold.point, this.onPlane(place, hold.point), -1);
-        this.pointers.set(event.pointerId, { view, place, hold, offset, pan: event.button !== 0 });
+        this.pointers.set(event.pointerId, { view, place, use, hold, offset, pan: event.button !== 0 });
         view.classList.toggle('pulling', hold !== null);
     }
 
@@ -122,6 +128,10 @@ export class Hands {
         if (!pointer) return;
         const before = pointer.place;
         pointer.place = this.place(event, pointer.view);
+        if (pointer.use) {
+            pointer.use.move(pointer.place);
+            return;
+        }
         if (pointer.hold) {
             const point = this.onPlane(pointer.place, pointer.hold.point);
             this.drag(pointer.hold, add(point, pointer.offset));
@@ -129,7 +139,7 @@ export class Hands {
         }
         const right = (pointer.place.x - before.x) * before.aspect;
         const up = pointer.place.y - before.y;
-        const other = [...this.pointers.values()].find((one) => one !== pointer && !one.hold);
+        const other = [...this.pointers.values()].find((one) => one !== pointer && !one.hold && !one.use);
         if (other) this.pinch(pointer.place, before, other.place, right, up);
         else if (pointer.pan) this.app.camera.pan(right, up);
         else this.app.camera.orbit(1.6 * right, 1.6 * up);
@@ -148,6 +158,7 @@ export class Hands {
         if (!pointer) return;
         this.pointers.delete(event.pointerId);
         pointer.view.classList.remove('pulling');
+        pointer.use?.end();
         const pin = event.shiftKey || this.app.pinning();
         if (pointer.hold) this.letGo(pointer.hold, pin || pointer.hold.pinned);
     }
@@ -156,8 +167,43 @@ export class Hands {
         if (event.ctrlKey || event.metaKey || event.altKey) return;
         if (event.target.closest('input, textarea, select')) return;
         if (event.key === ' ' && event.target.closest('button, summary, a')) return;
-        const done = this.pullKey(event) || this.cameraKey(event) || this.app.command(event.key);
+        const done = this.useKey(event) || this.pullKey(event) || this.cameraKey(event) || this.app.command(event.key);
         if (done) event.preventDefault();
+    }
+
+    // A line over both views, of places; of none, nothing.
+    showTrail(places) {
+        for (const view of this.app.views) {
+            const { width, height } = view.getBoundingClientRect();
+            const points = places.map(({ x, y }) => `${(x + 1) / 2 * width},${(1 - y) / 2 * height}`);
+            view.querySelector('polyline').setAttribute('points', points.join(' '));
+        }
+    }
+
+    // With another tool than the hand 'g' begins to use it in the middle of the view in focus.
+    useKey(event) {
+        const side = this.app.views.indexOf(document.activeElement);
+        if (event.key === 'g' && side >= 0 && !this.keyUse && this.app.tools.name !== 'pull') {
+            const box = this.app.views[side].getBoundingClientRect();
+            const place = { x: 0, y: 0, aspect: box.width / box.height, half: box.height / 2 };
+            const use = this.app.tools.begin(side, place);
+            if (use) this.keyUse = { place, use };
+            this.app.say(use ? 'Arrows move it, Enter ends.' : 'There is nothing in the middle of the view.');
+            return true;
+        }
+        if (!this.keyUse || event.target.closest('button, summary, a')) return false;
+        const { use, place } = this.keyUse;
+        if (event.key === 'Enter' || event.key === 'Escape') {
+            use.end();
+            this.keyUse = null;
+            this.app.say('');
+            return true;
+        }
+        if (!ARROWS[event.key]) return false;
+        const [right, up] = ARROWS[event.key].map((n) => 0.05 * n);
+        this.keyUse.place = { ...place, x: place.x + right / place.aspect, y: place.y + up };
+        use.move(this.keyUse.place);
+        return true;
     }
 
     // 'g' takes what is nearest to the middle of the view in focus; then arrows move it.

@@ -21,10 +21,13 @@ function wire(app) {
         theme: () => app.setTheme($('theme').getAttribute('aria-pressed') !== 'true'),
         original: () => app.visit(app.original),
     };
+    for (const tool of document.querySelectorAll('#tools input'))
+        tool.addEventListener('change', () => app.tools.choose(tool.value));
     for (const [id, action] of Object.entries(does)) $(id).addEventListener('click', action);
     const dark = matchMedia('(prefers-color-scheme: dark)');
     dark.addEventListener('change', () => app.setTheme(dark.matches));
     app.setTheme(dark.matches);
+    app.tools.choose(document.querySelector('#tools input:checked').value); // browsers keep it when reloading
     new ResizeObserver(() => app.changed()).observe($('canvas'));
     window.addEventListener('hashchange', () => app.openLink());
 }
@@ -70,6 +73,7 @@ window.shapebench = {
             advance: (frames) => app.advance(frames),
             pause: () => app.pause(true),
             text: () => app.text,
+            busy: () => app.busy,
             open: (text, keep) => (keep ? app.open(text, true) : app.visit(text)),
             project: (side, vertex) => app.project(side, vertex),
         });
