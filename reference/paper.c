@@ -7,7 +7,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <threads.h>
 
 #include "../lib/error.h"
 
@@ -18,7 +17,6 @@ static struct {
     RefPaperRow *row;
     RefPaperClaim *claim;
 } data;
-static once_flag once = ONCE_FLAG_INIT;
 
 const char *ref_status_name(RefStatus status)
 {
@@ -144,9 +142,16 @@ static void read_all(void)
     config_destroy(&config);
 }
 
+/* By whichever thread comes first; C11's call_once is not everywhere. */
+static void read_once(void)
+{
+#pragma omp critical(ref_paper)
+    if (!data.row) read_all();
+}
+
 const RefPaperRow *ref_paper_rows(int *count)
 {
-    call_once(&once, read_all);
+    read_once();
     *count = data.row_count;
     return data.row;
 }
@@ -182,7 +187,7 @@ RefStatus ref_paper_step_status(const RefPaperRow *row)
 
 const RefPaperClaim *ref_paper_claims(int *count)
 {
-    call_once(&once, read_all);
+    read_once();
     *count = data.claim_count;
     return data.claim;
 }

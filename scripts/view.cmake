@@ -8,13 +8,14 @@ foreach(header bench/view/view.h bench/view/given.h)
   list(APPEND exports ${declared})
 endforeach()
 
-include(scripts/embed.cmake) # builtin.c
+include(scripts/embed.cmake) # builtin.c, papers.c
 set(libconfig grammar libconfig scanctx scanner strbuf)
 list(TRANSFORM libconfig REPLACE "(.+)" "${SHAPEBENCH_VIEW}/lib/\\1.c")
 set_source_files_properties(${libconfig} PROPERTIES COMPILE_OPTIONS -w)
 
 sources_of(view_sources bench/view/*.c)
-list(APPEND view_sources bench/engines.c lib/public/skin.c lib/mesh/polygon.c ${CMAKE_BINARY_DIR}/builtin.c)
+list(APPEND view_sources bench/engines.c lib/public/skin.c lib/mesh/polygon.c reference/paper.c
+  ${CMAKE_BINARY_DIR}/builtin.c ${CMAKE_BINARY_DIR}/papers.c)
 foreach(noun scene/scene scene/scene_settings scene/body scene/memory scene/nearest scene/blades
     settings/setting settings/config_file system/suggest system/quote
     play/runner play/body_group play/carrier play/playback)

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../reference/paper.h"
 #include "../scene/builtin.h"
 #include "given.h"
 #include "side.h"
@@ -229,6 +230,15 @@ double view_stage_ms(int number, int stage)
     const ViewSide *side = side_of(number);
     if (!side || stage < 0 || stage >= SM_STAGES || !side->timed) return NAN;
     return 1e3 * side->lap[stage] / (double)side->timed;
+}
+
+double view_paper_percent(int number, int stage)
+{
+    static const char *const paper[VIEW_SIDES] = {"fastlsm", "octree"};
+    const ViewSide *side = side_of(number);
+    if (!side || stage < 0 || stage >= SM_STAGES) return NAN;
+    const RefPaperRow *row = ref_paper_find(paper[number], side->scene.row);
+    return row ? row->stage_percent[stage].value : NAN;
 }
 
 int view_stage_steps(int side)

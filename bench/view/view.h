@@ -56,6 +56,10 @@ double view_figure(int side, int figure);
  * since view_clear_stages(), and how many steps that were. */
 double view_stage_ms(int side, int stage);
 int view_stage_steps(int side);
+
+/* The percentage of a step that this engine's paper gives for the stage in the scene that is open;
+ * NaN: none. */
+double view_paper_percent(int side, int stage);
 void view_clear_stages(int side);
 
 /* The surface now: all instances, one after the other. view_surface() finds points and normals

@@ -34,6 +34,11 @@ export class App {
     say(words) { $('status').textContent = words; }
     changed() { this.stale = true; }
 
+    resized() {
+        this.changed();
+        if (this.text) this.panel.show(this.meters);
+    }
+
     // Opens a scene's text; '' or why not, and then all is as before. `keep`: motion goes on.
     async open(text, keep) {
         this.busy = true;

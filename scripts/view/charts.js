@@ -42,8 +42,9 @@ export function drawLines(canvas, meters, key) {
     pen.fillText(short(top), 5, 12);
 }
 
-// A cell's bar: as long as the share.
-export function setBar(cell, share) {
-    cell.textContent = Number.isFinite(share) ? `${Math.round(100 * share)} %` : '–';
+// A cell's bar: as long as the share; and the paper's, where it gives one.
+export function setBar(cell, share, paperPercent) {
+    const paper = Number.isFinite(paperPercent) ? ` (paper ${paperPercent} %)` : '';
+    cell.textContent = Number.isFinite(share) ? `${Math.round(100 * share)} %${paper}` : '–';
     cell.style.setProperty('--share', `${Number.isFinite(share) ? 100 * share : 0}%`);
 }

@@ -106,6 +106,7 @@ export class Engine {
 
     figure(side, name) { return this.call.view_figure(side, FIGURES.indexOf(name)); }
     stages(side) { return STAGES.map((name, stage) => this.call.view_stage_ms(side, stage)); }
+    paperPercent(side, stage) { return this.call.view_paper_percent(side, stage); }
     clearStages(side) { this.call.view_clear_stages(side); }
 
     // The surface now; its arrays hold until the next call.

@@ -167,7 +167,8 @@ export class Hands {
         if (event.ctrlKey || event.metaKey || event.altKey) return;
         if (event.target.closest('input, textarea, select')) return;
         if (event.key === ' ' && event.target.closest('button, summary, a')) return;
-        const done = this.useKey(event) || this.pullKey(event) || this.cameraKey(event) || this.app.command(event.key);
+        const done = this.useKey(event) || this.pullKey(event) || this.cameraKey(event)
+            || this.app.command(event.key);
         if (done) event.preventDefault();
     }
 

@@ -28,7 +28,7 @@ function wire(app) {
     dark.addEventListener('change', () => app.setTheme(dark.matches));
     app.setTheme(dark.matches);
     app.tools.choose(document.querySelector('#tools input:checked').value); // browsers keep it when reloading
-    new ResizeObserver(() => app.changed()).observe($('canvas'));
+    new ResizeObserver(() => app.resized()).observe($('canvas'));
     window.addEventListener('hashchange', () => app.openLink());
 }
 

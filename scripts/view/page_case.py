@@ -92,3 +92,11 @@ class PageCase(unittest.TestCase):
 
     def tearDown(self):
         self.assertEqual(self.driver.get_log("browser"), [], "messages on the console")
+
+
+# Waits until what has been asked of the page is done.
+SETTLE = """
+for (let i = 0; i < 8; i++) await new Promise((done) => requestAnimationFrame(() => setTimeout(done, 30)));
+while (shapebench.busy()) await new Promise((done) => setTimeout(done, 20));
+shapebench.pause();
+"""

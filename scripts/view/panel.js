@@ -1,38 +1,12 @@
-// panel.js - the knobs, each of which changes one setting of the scene's text, and the figures.
+// panel.js - the knobs' elements and the figures.
 import { STAGES } from 'view/engine';
-import {
-    asReal, getNumber, getNumbers, getSetting, getString, removeSetting, setSetting,
-} from 'view/scene_text';
+import { CHOICES, SLIDERS } from 'view/knobs';
+import { asReal, getNumber, getSetting, getString, setSetting } from 'view/scene_text';
 import { drawLines, setBar, short } from 'view/charts';
 
 const WAIT = 180; // ms after the last move of a knob
 const round2 = (value) => Number(value.toPrecision(2));
 
-// Sliders: `log` ones move by powers of ten. `get` and `set` where it is not the plain setting `key`.
-const SLIDERS = [
-    { key: 'w', label: 'w, half-width of regions', least: 1, most: 8, by: 1, whole: true, start: 2 },
-    { key: 'damping', label: 'Damping', least: 0, most: 1, by: 0.01, start: 0 },
-    { key: 'h', label: 'Time step h, s', least: 0.001, most: 0.03, log: true, start: 0.01 },
-    { key: 'particles', label: 'Particles wanted', least: 100, most: 60000, log: true, whole: true,
-        set: (text, value) => {
-            const without = removeSetting(removeSetting(text, 'cells'), 'cell');
-            return setSetting(without, 'particles', value);
-        } },
-    { key: 'gravity', label: 'Gravity in y', least: -19.62, most: 9.81, by: 0.981, start: 0,
-        choices: [0, -9.81],
-        get: (text) => getNumbers(text, 'gravity')?.[1],
-        set: (text, value) => {
-            const [x, , z] = getNumbers(text, 'gravity') ?? [0, 0, 0];
-            return setSetting(text, 'gravity', `[${asReal(x)}, ${value}, ${asReal(z)}]`);
-        } },
-    { key: 'epsilon', label: 'Octree: epsilon', least: 0, most: 2, by: 0.05, start: 0.5 },
-    { key: 'octree.levels', label: 'Octree: levels', least: 1, most: 6, by: 1, whole: true,
-        hint: 'not set: up to 4' },
-];
-const CHOICES = [
-    { key: 'summation', label: 'Summation', of: ['fast', 'bars', 'naive'] },
-    { key: 'polar', label: 'Polar', of: ['fast', 'jacobi'] },
-];
 const FIGURES = [
     ['ms a step, in this browser', (m) => m.stepMs],
     ['ms a frame: its steps, surface', (m) => m.frameMs],
@@ -70,7 +44,7 @@ class Knob {
     // Where the scene's text is refused, the knob goes back, and says why.
     async apply() {
         const { key, set = (text, value) => setSetting(text, key, value) } = this.what;
-        const refused = await this.panel.change(set(this.panel.text, this.value()));
+        const refused = await this.panel.change(set(this.panel.text, this.value(), this.panel.app));
         this.note.textContent = this.note.title = refused;
         this.fill(this.panel.text);
     }
@@ -96,9 +70,9 @@ class Slider extends Knob {
     }
 
     fill(text) {
-        const { get = (all) => getNumber(all, this.what.key), start, log, hint } = this.what;
+        const { get = (all) => getNumber(all, this.what.key), start, log, hint, otherwise } = this.what;
         const given = get(text);
-        const value = given ?? start ?? (hint ? 4 : this.panel.particles());
+        const value = given ?? start ?? (hint ? otherwise : this.panel.particles());
         this.input.value = log ? Math.log10(value) : value;
         this.output.textContent = given === undefined && hint ? hint : short(value);
         this.input.setAttribute('aria-valuetext', this.output.textContent);
@@ -111,8 +85,16 @@ class Choice extends Knob {
         this.output.remove();
     }
 
-    value() { return `"${this.input.value}"`; }
-    fill(text) { this.input.value = getString(text, this.what.key) ?? this.what.of[0]; }
+    value() { return this.what.set ? this.input.value : `"${this.input.value}"`; }
+
+    fill(text) {
+        const { get = (all) => getString(all, this.what.key) ?? this.what.of[0], of } = this.what;
+        const value = get(text);
+        const names = [...this.input.options].map((option) => option.value);
+        if (!names.includes(value)) this.input.add(new Option(value));
+        if (of.includes(value)) [...this.input.options].slice(of.length).forEach((option) => option.remove());
+        this.input.value = value;
+    }
 }
 
 export class Panel {
@@ -158,7 +140,7 @@ export class Panel {
             this.rows[row][side].textContent = only === undefined || only === side ? short(value) : '–';
         }));
         this.bars.forEach((cells, stage) => meters.forEach((meter, side) => {
-            setBar(cells[side], meter.shares[stage]);
+            setBar(cells[side], meter.shares[stage], this.app.engine.paperPercent(side, stage));
         }));
         for (const key of ['kinetic', 'momentum']) drawLines(document.getElementById(key), meters, key);
     }

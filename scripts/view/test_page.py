@@ -8,8 +8,9 @@ import tempfile
 import h5py
 import numpy
 from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.keys import Keys
 
-from page_case import PROGRAM, SIDES, PageCase
+from page_case import PROGRAM, SETTLE, SIDES, PageCase
 
 SCENES = ("hand-lattice", "hand-sampled", "penguin", "infant-bones", "liver", "flowers", "beam", "statue-shell",
           "penguins-collide")
@@ -130,6 +131,31 @@ class Page(PageCase):
         text = self.ask("return shapebench.text()")
         changed = re.sub(rf"^{name} = .*;", f"{name} = {value};", text, flags=re.MULTILINE)
         self.assertFalse(self.ask("return shapebench.open(values[0], true)", changed))
+
+    def test_every_knob_changes_its_setting(self):
+        """By the keyboard: the scene's text says what the knob does, the engines take it, and nothing is refused."""
+        self.open("hand-sampled")
+        for knob in self.driver.find_elements("css selector", ".knob input, .knob select"):
+            before = self.ask("return shapebench.text()")
+            name = knob.get_attribute("id")
+            options = [option.text for option in knob.find_elements("tag name", "option")]
+            for value in options[1:] or [None]:
+                knob.send_keys(value or Keys.ARROW_LEFT * 3)
+                self.ask(SETTLE)
+                note = self.driver.find_element("id", f"{name}-note").text
+                self.assertEqual(note, "", f"{name} {value}")
+                after = self.ask("return shapebench.text()")
+                self.assertNotEqual(after, before, f"{name} {value}")
+                before = after
+        for setting in ("weighting = \"plain\"", "widths = ( {", "near = ", "polar = \"jacobi\"", "summation = \"naive\""):
+            self.assertIn(setting, before)
+
+    def test_the_papers_shares_stand_beside(self):
+        self.open("statue-shell")
+        self.ask("shapebench.advance(60)")
+        cells = [cell.text for cell in self.driver.find_elements("css selector", "#stages td:nth-child(2)")]
+        for cell, percent in zip(cells, (20, 21, 8, 35, 16)):
+            self.assertIn(f"(paper {percent} %)", cell)
 
     def test_settings_change_what_they_should(self):
         self.open("hand")

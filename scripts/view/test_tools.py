@@ -3,7 +3,7 @@ import numpy
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.keys import Keys
 
-from page_case import SIDES, PageCase
+from page_case import SETTLE, SIDES, PageCase
 
 
 class Tools(PageCase):
@@ -113,11 +113,6 @@ class Tools(PageCase):
 
 
 COUNT = "return shapebench.engine.surface(1).indices.length"
-SETTLE = """
-for (let i = 0; i < 4; i++) await new Promise((done) => requestAnimationFrame(() => setTimeout(done, 30)));
-while (shapebench.busy()) await new Promise((done) => setTimeout(done, 20));
-shapebench.pause();
-"""
 
 # The box that a side's vertices are seen in, or one of them: left, top, right, bottom, as shares of its view.
 SEEN = """

@@ -1,0 +1,86 @@
+// knobs.js - what the page's knobs are: each changes one setting of the scene's text.
+import {
+    asReal, getNumbers, getSetting, removeSetting, setSetting,
+} from 'view/scene_text';
+
+// Where an octree's cells are split, as settings of its scene. The body stands on y = 0 in most.
+const SPLITS = {
+    'where parts are near': () => ({}),
+    'at the surface': () => ({ criteria: '( { kind = "surface"; } )' }),
+    'all alike': () => ({ criteria: '( { kind = "uniform"; } )' }),
+    'near its top': ({ low, high }) => {
+        const centre = [(low[0] + high[0]) / 2, high[1], (low[2] + high[2]) / 2].map(asReal).join(', ');
+        const radius = asReal(0.35 * Math.max(...high.map((x, d) => x - low[d])));
+        return { criteria: `( { kind = "sphere"; centre = [${centre}]; radius = ${radius}; } )` };
+    },
+    'near this view': ({ low, high }, camera) => {
+        const eye = camera.eye().map(asReal).join(', ');
+        const size = Math.hypot(...high.map((x, d) => x - low[d]));
+        const near = asReal(Math.max(0.1 * size, camera.distance - 0.1 * size));
+        const places = `eye_from = [${eye}]; eye_to = [${eye}]; near = ${near}`;
+        return { view: `{ ${places}; slack = 0.2; level = 12; }` };
+    },
+};
+const AS_IN_FILE = 'as the file says';
+
+function getSplits(text) {
+    const criteria = getSetting(text, 'octree.criteria');
+    if (getSetting(text, 'view')) return 'near this view';
+    if (!criteria) return 'where parts are near';
+    const kinds = [...criteria.matchAll(/kind *= *"(\w+)"/g)].map((match) => match[1]).join(' ');
+    return { surface: 'at the surface', uniform: 'all alike', sphere: 'near its top' }[kinds] ?? AS_IN_FILE;
+}
+
+function setSplits(text, value, app) {
+    if (value === AS_IN_FILE) return text;
+    const { criteria, view } = SPLITS[value](app.engine.bounds(), app.camera);
+    const bare = removeSetting(removeSetting(text, 'octree.criteria'), 'view');
+    if (view) return setSetting(bare, 'view', view);
+    return criteria ? setSetting(bare, 'octree.criteria', criteria) : bare;
+}
+
+// Regions in the upper half of the body, wider or narrower than elsewhere: stiffer or softer.
+function setUpper(text, value, app) {
+    const { low, high } = app.engine.bounds();
+    const far = asReal(100 * Math.max(...high.map((x, d) => x - low[d])));
+    const middle = asReal((low[1] + high[1]) / 2);
+    const box = `low = [-${far}, ${middle}, -${far}]; high = [${far}, ${far}, ${far}]`;
+    return setSetting(text, 'octree.widths', `( { ${box}; edges = ${value}; } )`);
+}
+
+function getUpper(text) {
+    const edges = /edges *= *([\d.]+)/.exec(getSetting(text, 'octree.widths') ?? '');
+    return edges ? Number(edges[1]) : undefined;
+}
+
+// Sliders: `log` ones move by powers of ten. `get` and `set` where it is not the plain setting `key`.
+export const SLIDERS = [
+    { key: 'w', label: 'w, half-width of regions', least: 1, most: 8, by: 1, whole: true, start: 2 },
+    { key: 'damping', label: 'Damping', least: 0, most: 1, by: 0.01, start: 0 },
+    { key: 'h', label: 'Time step h, s', least: 0.001, most: 0.03, log: true, start: 0.01 },
+    { key: 'particles', label: 'Particles wanted', least: 100, most: 60000, log: true, whole: true,
+        set: (text, value) => {
+            const without = removeSetting(removeSetting(text, 'cells'), 'cell');
+            return setSetting(without, 'particles', value);
+        } },
+    { key: 'gravity', label: 'Gravity in y', least: -19.62, most: 9.81, by: 0.981, start: 0,
+        choices: [0, -9.81],
+        get: (text) => getNumbers(text, 'gravity')?.[1],
+        set: (text, value) => {
+            const [x, , z] = getNumbers(text, 'gravity') ?? [0, 0, 0];
+            return setSetting(text, 'gravity', `[${asReal(x)}, ${value}, ${asReal(z)}]`);
+        } },
+    { key: 'epsilon', label: 'Octree: epsilon', least: 0, most: 2, by: 0.05, start: 0.5 },
+    { key: 'octree.levels', label: 'Octree: levels', least: 1, most: 6, by: 1, whole: true,
+        hint: 'not set: up to 4', otherwise: 4 },
+    { key: 'octree.widths', label: 'Octree: w of the upper half, edges', least: 0.25, most: 4, by: 0.25,
+        hint: 'as below', otherwise: 1, set: setUpper,
+        get: getUpper },
+];
+export const CHOICES = [
+    { key: 'octree.weighting', label: 'Octree: weighting', of: ['conserving', 'plain'] },
+    { key: 'octree.criteria', label: 'Octree: cells split', of: Object.keys(SPLITS),
+        get: getSplits, set: setSplits },
+    { key: 'summation', label: 'Summation', of: ['fast', 'bars', 'naive'] },
+    { key: 'polar', label: 'Polar', of: ['fast', 'jacobi'] },
+];
