@@ -28,7 +28,11 @@ function getSplits(text) {
     if (getSetting(text, 'view')) return 'near this view';
     if (!criteria) return 'where parts are near';
     const kinds = [...criteria.matchAll(/kind *= *"(\w+)"/g)].map((match) => match[1]).join(' ');
-    return { surface: 'at the surface', uniform: 'all alike', sphere: 'near its top' }[kinds] ?? AS_IN_FILE;
+    const name = {
+        features: 'where parts are near', surface: 'at the surface',
+        uniform: 'all alike', sphere: 'near its top',
+    }[kinds];
+    return name ?? AS_IN_FILE;
 }
 
 function setSplits(text, value, app) {

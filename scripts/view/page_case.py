@@ -79,7 +79,7 @@ class PageCase(unittest.TestCase):
 
     def open(self, name):
         refused = self.ask("const e = shapebench.engine; const no = await shapebench.open("
-                           "e.sceneText(values[0]), false); shapebench.pause(); return no", name)
+                           "e.sceneText(values[0]), false); shapebench.pause(); scrollTo(0, 0); return no", name)
         self.assertFalse(refused, f"{name}: {refused}")
         self.driver.find_element("id", "look").click()  # all of it in the picture
 
