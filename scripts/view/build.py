@@ -4,8 +4,7 @@
     build.py WASM OUT.html SCENE_TEXT_FILE MESH_FILE
 
 The page opens with that scene and its mesh, or drops a mesh alone; '' stands for none. It runs from file://, where
-modules cannot import
-each other by path: each is a data: URL with a name in the import map."""
+modules cannot import each other by path: each is a data: URL with a name in the import map."""
 import base64
 import contextlib
 import gzip
