@@ -32,6 +32,9 @@ void view_side_free(ViewSide *side);
 
 bool view_side_is_there(const ViewSide *side);
 
+/* The side of this number (view.h) if it is open and there, or NULL. */
+ViewSide *view_side_of(int number);
+
 /* May another side go on where this one is? Not where material has been cut or has broken. */
 bool view_side_is_whole(const ViewSide *side);
 

@@ -167,6 +167,11 @@ static ViewSide *side_of(int number)
     return side && view_side_is_there(side) ? side : NULL;
 }
 
+ViewSide *view_side_of(int number)
+{
+    return side_of(number);
+}
+
 const char *view_absent(int side)
 {
     if (side < 0 || side >= VIEW_SIDES || !view.side[side]) return "nothing is open";

@@ -75,8 +75,15 @@ export class App {
     }
 
     showSurfaces() {
-        for (const side of [0, 1]) this.picture.setSurface(side, this.engine.surface(side));
+        for (const side of [0, 1]) this.showSurface(side);
         this.changed();
+    }
+
+    // By the shader where eight particles carry each vertex, else by the processor.
+    showSurface(side) {
+        const carried = $('carrier').value === 'shader' ? this.engine.carried(side) : null;
+        if (carried) this.picture.carrySurface(side, carried, this.engine.places(side, carried));
+        else this.picture.setSurface(side, this.engine.surface(side));
     }
 
     // The engine has trapped: it begins anew with the scene that was open.
@@ -122,7 +129,7 @@ export class App {
             this.engine.step(side, steps);
             const stepped = performance.now();
             spent += stepped - begin;
-            this.picture.setSurface(side, this.engine.surface(side));
+            this.showSurface(side);
             this.meters[side].add(steps, stepped - begin, performance.now() - begin);
             const [kinetic, momentum] = ['kinetic', 'momentum'].map((name) => this.engine.figure(side, name));
             this.meters[side].note(this.now, kinetic, momentum);

@@ -1,5 +1,6 @@
 // draw.js - draws both views with WebGL2: bodies, obstacles, ground with shadow, and what is held.
 import { add, cross, dot, unit } from 'view/camera';
+import { Carry } from 'view/carry';
 import { findGrounds, meshObstacles } from 'view/shapes';
 
 const MAP = 512; // pixels of a side's shadow map
@@ -58,11 +59,16 @@ class Mesh {
 
     set(surface) {
         const { gl } = this;
-        gl.bindVertexArray(this.array);
         for (const [buffer, values] of [[this.points, surface.points], [this.normals, surface.normals]]) {
             gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
             gl.bufferData(gl.ARRAY_BUFFER, values, gl.DYNAMIC_DRAW);
         }
+        this.setTriangles(surface);
+    }
+
+    setTriangles(surface) {
+        const { gl } = this;
+        gl.bindVertexArray(this.array);
         if (surface.version === undefined || surface.version !== this.version)
             gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, surface.indices, gl.DYNAMIC_DRAW);
         gl.bindVertexArray(null);
@@ -110,13 +116,14 @@ export class Picture {
         this.maps = [makeMap(gl), makeMap(gl)];
         this.stones = new Mesh(gl);
         this.dots = new Mesh(gl);
+        this.carry = new Carry(gl, shaders['carry.vert']);
         this.grounds = [];
     }
 
     // The scene's obstacles, and the ground under what is within `bounds` at rest.
     setScene(bounds, obstacles) {
         this.stones.set(meshObstacles(obstacles));
-        for (const body of this.bodies) body.version = undefined; // numbers of another scene
+        for (const one of [...this.bodies, this.carry]) one.version = undefined; // numbers of another scene
         const middle = add(bounds.low, bounds.high).map((x) => x / 2);
         const reach = 0.5 * Math.hypot(...add(bounds.high, bounds.low, -1)) || 1;
         this.grounds = findGrounds(bounds, obstacles).map(({ point, normal }) => {
@@ -129,6 +136,31 @@ export class Picture {
     }
 
     setSurface(side, surface) { this.bodies[side].set(surface); }
+
+    // Is there no graphics card, and shaders run on the processor?
+    isSoftware() {
+        const told = this.gl.getExtension('WEBGL_debug_renderer_info');
+        const name = told ? this.gl.getParameter(told.UNMASKED_RENDERER_WEBGL) : '';
+        return /swiftshader|llvmpipe|software/i.test(name);
+    }
+
+    // The same by the shader, of what carries the surface and of where that is.
+    carrySurface(side, carried, places) {
+        const body = this.bodies[side];
+        body.setTriangles(carried);
+        this.carry.run(carried, places, body.points, body.normals);
+    }
+
+    // Points and normals as they are on the graphics card.
+    readSurface(side) {
+        const { gl, bodies } = this;
+        return [bodies[side].points, bodies[side].normals].map((buffer) => {
+            gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+            const values = new Float32Array(gl.getBufferParameter(gl.ARRAY_BUFFER, gl.BUFFER_SIZE) / 4);
+            gl.getBufferSubData(gl.ARRAY_BUFFER, 0, values);
+            return values;
+        });
+    }
 
     use({ program, at }, values) {
         const { gl } = this;

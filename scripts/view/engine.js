@@ -9,6 +9,7 @@ const FIGURES = [
     'steps', 'kinetic', 'momentum', 'cell', 'h', 'stepsPerFrame',
 ];
 const OBSTACLES = ['plane', 'sphere', 'box', 'capsule'];
+const CARRIED_ROW = 2048; // VIEW_ROW
 const ENOSYS = 52;
 const EBADF = 8;
 
@@ -121,6 +122,28 @@ export class Engine {
             normals: new Float32Array(buffer, this.call.view_normals(side), 3 * vertices),
             indices: new Uint32Array(buffer, this.call.view_indices(side), 3 * triangles),
         };
+    }
+
+    // What carries the surface of a side for a shader (carried.h), or null; its arrays hold until the next
+    // call, as does where particles are now.
+    carried(side) {
+        const { call } = this;
+        const version = call.view_carried(side);
+        if (!version) return null;
+        const [vertices, particles] = [call.view_carried_vertices(side), call.view_carried_particles(side)];
+        const { buffer } = call.memory;
+        return {
+            version, vertices, particles, bodies: call.view_carried_bodies(side), row: CARRIED_ROW,
+            carriers: new Int32Array(buffer, call.view_carriers(side), 8 * vertices),
+            weights: [0, 1, 2].map((which) =>
+                new Float32Array(buffer, call.view_carried_weights(side, which), 8 * vertices)),
+            indices: new Uint32Array(buffer, call.view_indices(side), 3 * call.view_triangles(side)),
+        };
+    }
+
+    places(side, { particles, bodies, row }) {
+        const at = this.call.view_places(side);
+        return new Float32Array(this.call.memory.buffer, at, 4 * row * Math.ceil(particles * bodies / row));
     }
 
     doubles(at, count) { return [...new Float64Array(this.call.memory.buffer, at, count)]; }

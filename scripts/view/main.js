@@ -21,6 +21,8 @@ function wire(app) {
         theme: () => app.setTheme($('theme').getAttribute('aria-pressed') !== 'true'),
         original: () => app.visit(app.original),
     };
+    if (app.picture.isSoftware()) $('carrier').value = 'processor';
+    $('carrier').addEventListener('change', () => app.showSurfaces());
     for (const tool of document.querySelectorAll('#tools input'))
         tool.addEventListener('change', () => app.tools.choose(tool.value));
     for (const [id, action] of Object.entries(does)) $(id).addEventListener('click', action);
@@ -75,6 +77,8 @@ window.shapebench = {
             text: () => app.text,
             busy: () => app.busy,
             open: (text, keep) => (keep ? app.open(text, true) : app.visit(text)),
+            drawn: (side) => app.picture.readSurface(side),
+            showSurface: (side) => app.showSurface(side),
             project: (side, vertex) => app.project(side, vertex),
         });
     }),
