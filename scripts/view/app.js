@@ -2,10 +2,11 @@
 import { Camera } from 'view/camera';
 import { Picture, THEMES } from 'view/draw';
 import { SIDES } from 'view/engine';
+import { Film } from 'view/film';
 import { Hands } from 'view/hands';
 import { Meter } from 'view/meter';
 import { Panel } from 'view/panel';
-import { packScene, savePicture, unpackScene } from 'view/share';
+import { copyWithCaptions, packScene, saveFile, unpackScene } from 'view/share';
 import { findStage } from 'view/shapes';
 import { Tools } from 'view/tools';
 
@@ -25,6 +26,7 @@ export class App {
         this.panel = new Panel(this);
         this.tools = new Tools(this);
         this.hands = new Hands(this);
+        this.film = new Film($('video'));
         this.playing = true;
         Object.assign(this, { busy: false, stale: true, now: 0, last: 0, shown: 0, cost: 0 });
         this.text = this.awaited = '';
@@ -191,7 +193,10 @@ export class App {
         try {
             this.tools.frame();
             if (this.playing) this.play();
-            if (this.stale) this.draw();
+            if (this.stale) {
+                this.draw();
+                this.film.add(now, $('canvas'), (copy) => this.copyViews(copy));
+            }
             if (!this.playing || now - this.shown < SHOW_MS) return;
             this.shown = now;
             this.show(false);
@@ -206,7 +211,7 @@ export class App {
 
     // Frames one after the other, each with all its steps, whatever time they take.
     advance(frames = 1) {
-        this.pause(true);
+        if (this.playing) this.pause(true);
         for (let i = 0; i < frames; i++) this.step(this.stepsPerFrame());
         this.draw();
         this.show(true);
@@ -243,13 +248,25 @@ export class App {
         if (this.text) this.panel.show(this.meters);
     }
 
-    picturePNG() {
-        this.draw();
+    // Copies both views, as they have just been drawn, onto a canvas, with names and times.
+    copyViews(copy) {
         const time = (side) => (this.engine.absent(side) ? ''
             : `${SIDES[side]}, ${this.engine.figure(side, 'time').toFixed(2)} s`);
         const ink = getComputedStyle(document.body).color;
-        savePicture($('canvas'), this.boxes(), [time(0), time(1)], ink);
+        copyWithCaptions(copy, $('canvas'), this.boxes(), [time(0), time(1)], ink);
     }
+
+    // Both views now, as a canvas of their own.
+    still() {
+        this.draw();
+        const { width, height } = $('canvas');
+        const copy = Object.assign(document.createElement('canvas'), { width, height });
+        this.copyViews(copy);
+        return copy;
+    }
+
+    picturePNG() { this.still().toBlob((blob) => saveFile('shapebench.png', blob)); }
+    async saveVideo() { this.say(await this.film.save()); }
 
     async copyLink() {
         this.fragment = `#${await packScene(this.text)}`;

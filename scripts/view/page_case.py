@@ -9,34 +9,19 @@ import tempfile
 import unittest
 
 try:
+    import browser
     import numpy
-    from selenium import webdriver
-    from selenium.webdriver.chrome.service import Service
 except ImportError as missing:
-    print(f"skipped: no {missing.name}: install python3-selenium and python3-numpy")
+    print(f"skipped: no {missing.name}: install chromium, chromium-driver, python3-selenium and python3-numpy")
     sys.exit(77)
 
-CHROMIUM, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
-for needed, package in ((CHROMIUM, "chromium"), (DRIVER, "chromium-driver"), (shutil.which("wasm-ld"), "lld"),
-                        (shutil.which("llvm-ar"), "llvm"), (shutil.which("clang"), "clang")):
-    if not needed:
+for needed, package in (("wasm-ld", "lld"), ("llvm-ar", "llvm"), ("clang", "clang")):
+    if not shutil.which(needed):
         print(f"skipped: install {package}")
         sys.exit(77)
 HERE = pathlib.Path(__file__).resolve().parent
 PROGRAM = pathlib.Path(sys.argv[1]).resolve()
 SIDES = ("fastlsm", "octree")
-
-
-def browser(width=1000, height=640):
-    options = webdriver.ChromeOptions()
-    options.binary_location = CHROMIUM
-    for argument in ("--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--hide-scrollbars",
-                     "--enable-unsafe-swiftshader", f"--window-size={width},{height}"):
-        options.add_argument(argument)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    driver = webdriver.Chrome(service=Service(DRIVER), options=options)
-    driver.set_script_timeout(120)
-    return driver
 
 
 def make_page(page, *what):
@@ -54,7 +39,7 @@ def open_page():
     atexit.register(folder.cleanup)
     page = pathlib.Path(folder.name) / "page.html"
     make_page(page, "hand")
-    driver = browser()
+    driver = browser.start(1000, 640)
     atexit.register(driver.quit)
     driver.get(page.as_uri())
     return driver
@@ -69,13 +54,7 @@ class PageCase(unittest.TestCase):
     @classmethod
     def ask(cls, body, *values):
         """What the body of an asynchronous function returns, in the page."""
-        answer = cls.driver.execute_async_script(
-            "const done = arguments[arguments.length - 1], values = [...arguments].slice(0, -1);"
-            f"(async () => {{ {body} }})().then((value) => done({{ value }}), "
-            "(error) => done({ error: String(error.stack || error) }))", *values)
-        if "error" in answer:
-            raise AssertionError(answer["error"])
-        return answer.get("value")
+        return browser.ask(cls.driver, body, *values)
 
     def open(self, name):
         refused = self.ask("const e = shapebench.engine; const no = await shapebench.open("

@@ -36,11 +36,10 @@ export function saveFile(name, blob) {
     setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
 
-// The canvas as it has just been drawn, with a line on each view, as a PNG.
-export function savePicture(canvas, boxes, captions, ink) {
-    const copy = document.createElement('canvas');
-    [copy.width, copy.height] = [canvas.width, canvas.height];
-    const pen = copy.getContext('2d');
+// Copies the canvas as it has just been drawn onto another, of whose size it gets, with a line on each view.
+export function copyWithCaptions(copy, canvas, boxes, captions, ink) {
+    const pen = copy.getContext('2d', { alpha: false });
+    pen.setTransform(copy.width / canvas.width, 0, 0, copy.height / canvas.height, 0, 0);
     pen.drawImage(canvas, 0, 0);
     pen.fillStyle = ink;
     const size = Math.round(boxes[0].height / 28);
@@ -48,5 +47,4 @@ export function savePicture(canvas, boxes, captions, ink) {
     boxes.forEach((box, side) => {
         pen.fillText(captions[side], box.x + size, canvas.height - box.y - box.height + 1.8 * size);
     });
-    copy.toBlob((blob) => saveFile('shapebench.png', blob));
 }
