@@ -8,14 +8,14 @@
 #include "../system/process.h"
 #include "command.h"
 
-enum { FIXED = 9 }; /* words of the command that starts the script */
+enum { FIXED = 10 }; /* words of the command that starts the script */
 
 #define PYTHON "/usr/bin/python3" /* Debian's, which has h5py and matplotlib */
 
 typedef struct {
     BenchCommon common;
     const char *output, *title;
-    bool overwrite;
+    bool overwrite, no_page;
 } Options;
 
 static const BenchSetting settings[] = {
@@ -25,6 +25,9 @@ static const BenchSetting settings[] = {
          "and every figure as SVG, PNG and CSV (default: report.html)"),
      BENCH_IN(Options, output)},
     BENCH_OVERWRITE_OPTION(Options, overwrite, 1),
+    {BENCH_OPTION("no-page", NULL, 1,
+                  "Leave out the live page, a megabyte, which opens the tables' scenes"),
+     BENCH_IN(Options, no_page)},
     {BENCH_OPTION("title", "TEXT", 1, "The page's heading (default: shapebench report)"),
      BENCH_IN(Options, title), .letter = 't'},
     {0},
@@ -40,7 +43,8 @@ static void check(const struct argp_state *state, void *record)
 
 static const char help[] =
     "Make a page of result files that can be sent to a colleague: tables beside the papers', "
-    "claims with verdicts, figures with their data, and where it was measured.\v"
+    "claims with verdicts, figures with their data, scenes to be pulled by hand, and where it "
+    "was measured.\v"
     "FILE is what tables, claims, sweep and calibrate write with -o. The page needs no network. "
     "Files of the same scenes from several commits make a history.\n" BENCH_EXIT_CODES;
 
@@ -60,6 +64,7 @@ static SmCode perform(void *record, int argc, char **argv, SmError *error)
     int words = sizeof start / sizeof *start;
     if (common->quiet) word[words++] = "--quiet";
     if (options->overwrite) word[words++] = "--overwrite";
+    if (options->no_page) word[words++] = "--no-page";
     word[words++] = "--"; /* what follows are files, whatever they begin with */
     memcpy(word + words, common->word, (size_t)common->words * sizeof *word);
     fflush(NULL);

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """From result files to one page that can be sent to a colleague: `shapebench report` starts it.
 
-usage: main.py [--title TEXT] [--overwrite] -o NAME.html|FOLDER FILE.h5...
+usage: main.py [--title TEXT] [--overwrite] [--no-page] -o NAME.html|FOLDER FILE.h5...
 
 NAME.html is one file with everything in it; anything else is a folder with index.html, and every figure
 as SVG, PNG and CSV. Exit code: 0 done, 2 usage, 3 a file cannot be used, 4 cannot be written."""
@@ -32,6 +32,7 @@ try:
     import calibration_figures
     import claim_figures
     import draft
+    import live
     import row_figures
     import sources
     import sweep_figures
@@ -45,10 +46,10 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 
 
 class Part:
-    """A section of the page."""
+    """A section of the page; `scenes` of its tables can be opened live."""
 
-    def __init__(self, id, title, sentences=(), tables=(), figures=()):
-        self.id, self.title = id, title
+    def __init__(self, id, title, sentences=(), tables=(), figures=(), scenes=()):
+        self.id, self.title, self.scenes = id, title, list(scenes)
         self.sentences, self.tables, self.figures = list(sentences), list(tables), list(figures)
 
 
@@ -63,7 +64,7 @@ def measured_part(files):
     if busy:
         sentences.append(f"Other programs left no undisturbed time to {', '.join(busy)}: they are BUSY.")
     return Part("measured", "Measured beside the papers", sentences, tables.all_tables(files),
-                row_figures.all_figures(files))
+                row_figures.all_figures(files), live.scenes(files))
 
 
 def claims_part(files):
@@ -81,7 +82,8 @@ def sweeps_part(files):
         return None
     return Part("sweeps", "Which w, which epsilon", map(sweep_figures.summary, files),
                 map(sweep_figures.front_table, files),
-                [figure for source in files for figure in sweep_figures.figures(source)])
+                [figure for source in files for figure in sweep_figures.figures(source)],
+                dict.fromkeys(source.plan["scene"] for source in files))
 
 
 def calibrations_part(files):
@@ -107,13 +109,17 @@ def summary(files):
     return f"Shape-matching deformation on {' and '.join(machines)}{when}."
 
 
-def page(title, files, parts, picture, data_link):
+def read_text(name):
+    with open(os.path.join(HERE, name), encoding="utf-8") as file:
+        return Markup(file.read())
+
+
+def page(title, packed, files, parts, picture, data_link):
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), autoescape=True,
                                      undefined=jinja2.StrictUndefined)
-    with open(os.path.join(HERE, "style.css"), encoding="utf-8") as file:
-        style = Markup(file.read())
     return environment.get_template("page.html").render(
-        title=title, made_by=MADE_BY, summary=summary(files), style=style, parts=parts, picture=picture, data_link=data_link,
+        title=title, made_by=MADE_BY, summary=summary(files), style=read_text("style.css"), parts=parts, picture=picture,
+        data_link=data_link, live=packed, script=read_text("live.js"),
         contents=[(part.id, part.title) for part in parts], files=[source.name for source in files])
 
 
@@ -141,10 +147,10 @@ def write_file(path, content):
         os.fsync(file.fileno())
 
 
-def write_page(output, title, files, parts, overwrite):
+def write_page(output, title, packed, files, parts, overwrite):
     """One file, whole or not at all."""
     with draft.begun(output, overwrite) as file:
-        file.write(page(title, files, parts, inline, inline_data).encode())
+        file.write(page(title, packed, files, parts, inline, inline_data).encode())
 
 
 def may_replace(folder):
@@ -182,7 +188,7 @@ def check_folder(output, overwrite):
         raise draft.Refused(f"{output}: cannot be written: it is there; choose another name, or give --overwrite")
 
 
-def write_folder(output, title, files, parts, overwrite):
+def write_folder(output, title, packed, files, parts, overwrite):
     """A folder of a page and its figures, in place of an older report of that name."""
     check_folder(output, overwrite)
     parent = os.path.dirname(os.path.abspath(output))
@@ -192,7 +198,7 @@ def write_folder(output, title, files, parts, overwrite):
         for figure in (figure for part in parts for figure in part.figures):
             for form, content in (("svg", figure.svg), ("png", figure.png), ("csv", figure.csv().encode())):
                 write_file(os.path.join(made, f"{figure.name}.{form}"), content)
-        text = page(title, files, parts, linked, lambda figure: f"{figure.name}.csv")
+        text = page(title, packed, files, parts, linked, lambda figure: f"{figure.name}.csv")
         write_file(os.path.join(made, "index.html"), text.encode())
         take_place(made, output)
     except BaseException:
@@ -207,6 +213,7 @@ def parse():
                         help="a page NAME.html, or a folder (default: %(default)s)")
     parser.add_argument("--overwrite", action="store_true", help="replace a page or report that is there")
     parser.add_argument("--title", default="shapebench report")
+    parser.add_argument("--no-page", action="store_true", help="leave out the live page, a megabyte")
     parser.add_argument("--quiet", action="store_true")
     return parser.parse_args()
 
@@ -218,6 +225,17 @@ def unique_names(parts):
         seen[figure.name] = seen.get(figure.name, 0) + 1
         if seen[figure.name] > 1:
             figure.name += f"-{seen[figure.name]}"
+
+
+def find_page(options, parts):
+    """The live page, packed, where there are scenes to open and nobody leaves it out."""
+    if options.no_page or not any(part.scenes for part in parts):
+        return None
+    packed = live.packed()
+    if not packed:
+        print("shapebench report: there is no page.html, so scenes cannot be opened in the report: "
+              "scripts/run view hand -o results/page.html makes it", file=sys.stderr)
+    return packed
 
 
 def main():
@@ -236,7 +254,7 @@ def main():
     unique_names(parts)
     write = write_page if alone else write_folder
     try:
-        write(output, options.title, files, parts, options.overwrite)
+        write(output, options.title, find_page(options, parts), files, parts, options.overwrite)
     except draft.Refused as error:
         fail(str(error), 4)
     except OSError as error:

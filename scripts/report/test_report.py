@@ -2,7 +2,9 @@
 """Tests of `shapebench report` on files that the program itself writes. CTest runs it.
 
 usage: test_report.py PROGRAM"""
+import base64
 import csv
+import gzip
 import html.parser
 import io
 import os
@@ -40,12 +42,15 @@ class Page(html.parser.HTMLParser):
     def __init__(self, text):
         super().__init__()
         self.open, self.wordless, self.addresses, self.text, self.figures = [], 0, [], "", 0
+        self.scripts = []
         self.feed(text)
         self.close()
 
     def handle_starttag(self, tag, attributes):
         values = dict(attributes)
         self.figures += tag == "figure"
+        if tag == "script":
+            self.scripts.append("")
         self.addresses += [values[name] for name in ("href", "src") if name in values]
         if tag == "svg" and not values.get("aria-label") or tag == "img" and not values.get("alt"):
             self.wordless += 1
@@ -60,7 +65,10 @@ class Page(html.parser.HTMLParser):
         self.open.pop()
 
     def handle_data(self, data):
-        self.text += data
+        if self.open and self.open[-1] == "script":
+            self.scripts[-1] += data
+        else:
+            self.text += data
 
 
 def shapebench(*words):
@@ -93,7 +101,7 @@ class Report(unittest.TestCase):
     def page(self, *files):
         output = self.at("page.html")
         done = shapebench("report", "--overwrite", "-o", output, *files)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
         with open(output, encoding="utf-8") as file:
             page = Page(file.read())
         self.assertEqual(page.open, [])
@@ -305,6 +313,25 @@ class Report(unittest.TestCase):
         self.assertRegex(picture, "<text [^>]*>penguin</text>")
         self.assertNotIn("<metadata", picture)
         self.assertLess(len(picture), 20000)
+
+    def test_the_live_page_is_in_it(self):
+        """Once, beside the tables of its scenes; --no-page leaves it out, and where it is not there a line says so."""
+        page = self.page(self.rows, self.rows)
+        with open(os.path.join(SOURCES, "results", "page.html"), "rb") as file:
+            self.assertEqual(gzip.decompress(base64.b64decode(page.scripts[0])), file.read())
+        self.assertEqual(len(page.scripts), 2)
+        self.assertRegex(page.text, r"it runs in this page, [^\n]*\n\s*penguin \n")
+        done = shapebench("report", "--no-page", "-o", self.at("small.html"), self.rows)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        with open(self.at("small.html"), encoding="utf-8") as file:
+            small = Page(file.read())
+        self.assertEqual((small.scripts, "it runs in this page" in small.text), ([], False))
+
+        part = main.Part("measured", "Measured", scenes=["penguin"])
+        options = mock.Mock(no_page=False)
+        with mock.patch("main.live.PLACES", (self.at("no.html"),)), mock.patch("sys.stderr", io.StringIO()) as said:
+            self.assertIsNone(main.find_page(options, [part]))
+        self.assertRegex(said.getvalue(), "^shapebench report: there is no page.html, .*\n$")
 
     def test_an_older_report_is_kept_until_the_new_one_is_there(self):
         old, new = self.at("old"), self.at("new.tmp")
