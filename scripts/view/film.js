@@ -14,7 +14,8 @@ const CODECS = [['vp8', 'V_VP8'], ['vp09.00.31.08', 'V_VP9']]; // their names he
 
 // The first codec that the browser encodes, or why there is none.
 async function findCodec() {
-    if (!window.VideoEncoder) throw new Error('This browser cannot encode video (it has no VideoEncoder).');
+    if (!window.VideoEncoder)
+        throw new Error('This browser cannot encode video, or only for pages from files and by https.');
     for (const [codec, name] of CODECS) {
         const asked = { codec, width: WIDEST, height: WIDEST / 2, bitrate: BITRATE, framerate: RATE };
         if ((await VideoEncoder.isConfigSupported(asked)).supported) return { codec, name };
