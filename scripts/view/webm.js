@@ -1,4 +1,4 @@
-// webm.js - writes encoded frames as a WebM file, which is EBML: elements of an identifier, a length, content.
+// webm.js - writes encoded frames as a WebM file, which is EBML: elements of an id, a length, content.
 const TICK = 1000000; // nanoseconds in a unit of the file's times: it counts milliseconds
 
 const text = (words) => new TextEncoder().encode(words);
