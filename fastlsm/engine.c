@@ -608,32 +608,86 @@ static void engine_count(SmEngine *e, SmCounts *counts)
     };
 }
 
-static int compare_numbers(const void *a, const void *b)
+typedef struct {
+    long number;
+    int row; /* region.h */
+} Member;
+
+static int compare_members(const void *a, const void *b)
 {
-    const long *x = a, *y = b;
-    return (*x > *y) - (*x < *y);
+    const Member *x = a, *y = b;
+    return (x->number > y->number) - (x->number < y->number);
 }
 
-static long engine_region(SmEngine *e, long number, long *member, long room)
+/* A region's members by rising number; the caller frees. */
+static Member *find_members(const SmEngine *e, long number, long *count)
 {
     const Lsm *lsm = e->lsm;
-    long centre = inner_of(e, number), first = number / e->count * e->count, count = 0;
+    long centre = inner_of(e, number), first = number / e->count * e->count;
     const int *c = lsm->lattice.coord[centre];
     uint64_t rows[LSM_MAX_SIDE * LSM_MAX_SIDE];
     long most = lsm_region_rows(&lsm->lattice, &lsm->interior, centre, rows);
     int *outer = outer_numbers(e);
-    long *all = sm_alloc((size_t)most, sizeof(long));
+    Member *all = sm_alloc((size_t)most, sizeof *all);
+    *count = 0;
     for (int row = 0; row < lsm->side * lsm->side; row++)
-        for (uint64_t rest = rows[row]; rest; rest &= rest - 1)
-            all[count++] =
-                first + outer[lsm_lattice_find(&lsm->lattice, c[0] - lsm->w + __builtin_ctzll(rest),
-                                               c[1] - lsm->w + row % lsm->side,
-                                               c[2] - lsm->w + row / lsm->side)];
-    qsort(all, (size_t)count, sizeof *all, compare_numbers);
-    memcpy(member, all, (size_t)(count < room ? count : room) * sizeof *all);
+        for (uint64_t rest = rows[row]; rest; rest &= rest - 1) {
+            long p =
+                lsm_lattice_find(&lsm->lattice, c[0] - lsm->w + __builtin_ctzll(rest),
+                                 c[1] - lsm->w + row % lsm->side, c[2] - lsm->w + row / lsm->side);
+            all[(*count)++] = (Member){first + outer[p], row};
+        }
+    qsort(all, (size_t)*count, sizeof *all, compare_members);
     free(outer);
+    return all;
+}
+
+static long engine_region(SmEngine *e, long number, long *member, long room)
+{
+    long count;
+    Member *all = find_members(e, number, &count);
+    for (long i = 0; i < count && i < room; i++) member[i] = all[i].number;
     free(all);
     return count;
+}
+
+/* A bar is a row of the region's window, a plate a plane of such (subsum_lists.h). */
+static long engine_bars(SmEngine *e, long number, int *bar, int *plate)
+{
+    int side = e->lsm->side, bars = 0, plates = 0, last = -1;
+    int name[LSM_MAX_SIDE * LSM_MAX_SIDE], of[LSM_MAX_SIDE * LSM_MAX_SIDE] = {0};
+    long count;
+    if (e->lsm->params.summation == SM_SUM_NAIVE) return 0;
+    Member *all = find_members(e, number, &count);
+    for (long i = 0; i < count; i++) of[all[i].row] = 1;
+    for (int row = 0; row < side * side; row++) {
+        if (!of[row]) continue;
+        if (row / side != last) plates++;
+        last = row / side;
+        name[row] = bars++;
+        of[row] = plates - 1;
+    }
+    for (long i = 0; i < count; i++) bar[i] = name[all[i].row], plate[i] = of[all[i].row];
+    free(all);
+    return bars;
+}
+
+static long engine_links(SmEngine *e, int (*link)[2], long room)
+{
+    const LsmLattice *l = &e->lsm->lattice;
+    long all = lsm_lattice_links(l), count = 0;
+    int *outer = room > 0 ? outer_numbers(e) : NULL;
+    for (long p = 0; p < l->count && count < room; p++)
+        for (uint32_t rest = l->link[p] >> (LSM_SELF + 1); rest && count < room; rest &= rest - 1) {
+            int bit = LSM_SELF + 1 + __builtin_ctz(rest), a = outer[p];
+            int b = outer[lsm_lattice_find(l, l->coord[p][0] + bit % 3 - 1,
+                                           l->coord[p][1] + bit / 3 % 3 - 1,
+                                           l->coord[p][2] + bit / 9 - 1)];
+            link[count][0] = a < b ? a : b;
+            link[count++][1] = a < b ? b : a;
+        }
+    free(outer);
+    return all;
 }
 
 const SmEngineType SM_NAME(fastlsm_engine) = {
@@ -655,4 +709,6 @@ const SmEngineType SM_NAME(fastlsm_engine) = {
     .contacts = engine_contacts,
     .pieces = engine_pieces,
     .region = engine_region,
+    .bars = engine_bars,
+    .links = engine_links,
 };

@@ -190,6 +190,16 @@ typedef struct {
     /* Members of particle p's region in rising order. Returns how many; writes at most `room`. NULL
      * of engines without regions, which have no goals to compare. */
     long (*region)(SmEngine *engine, long p, long *member, long room);
+
+    /* How the sum over particle p's region is made of sums (fastlsm section 3.1): of each member,
+     * in region()'s order, the bar that it is in, and the plate that this is in; both numbered from
+     * 0. `bar` and `plate` are [members]. Returns how many bars; 0, and nothing is written, where
+     * members are summed one by one. O(particles). NULL of engines without bars. */
+    long (*bars)(SmEngine *engine, long p, int *bar, int *plate);
+
+    /* One body's unbroken links, the lower number first. Returns how many; writes at most `room`.
+     * O(links), with no room O(particles). NULL of engines whose particles have none. */
+    long (*links)(SmEngine *engine, int (*link)[2], long room);
 } SmEngineType;
 
 /* The first member that must be there and is not, "step" or "set_state"; NULL: the type is whole.
