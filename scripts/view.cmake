@@ -1,7 +1,7 @@
 # The page's module: what bench/view exports, with all that plays a scene, for WebAssembly. Of bench/ it
 # takes no more than that, and of libraries libconfig's sources, whose folder SHAPEBENCH_VIEW names.
 
-foreach(header bench/view/view.h bench/view/given.h bench/view/carried.h)
+foreach(header bench/view/view.h bench/view/given.h bench/view/carried.h bench/view/inside.h)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${header})
   file(STRINGS ${header} declared REGEX "^[a-z ]+[*]?view_[a-z_]+\\(")
   list(TRANSFORM declared REPLACE "^[a-z ]+[*]?(view_[a-z_]+)\\(.*" "-Wl,--export=\\1")
