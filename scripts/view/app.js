@@ -4,6 +4,7 @@ import { Picture, THEMES } from 'view/draw';
 import { SIDES } from 'view/engine';
 import { Film } from 'view/film';
 import { Hands } from 'view/hands';
+import { Inside } from 'view/inside';
 import { Meter } from 'view/meter';
 import { Panel } from 'view/panel';
 import { copyWithCaptions, packScene, saveFile, unpackScene } from 'view/share';
@@ -27,6 +28,7 @@ export class App {
         this.tools = new Tools(this);
         this.hands = new Hands(this);
         this.film = new Film($('video'));
+        this.inside = this.picture.inside = new Inside(this, shaders);
         this.playing = true;
         Object.assign(this, { busy: false, stale: true, now: 0, last: 0, shown: 0, cost: 0 });
         this.text = this.awaited = '';

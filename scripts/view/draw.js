@@ -4,13 +4,13 @@ import { Carry } from 'view/carry';
 import { findGrounds, meshObstacles } from 'view/shapes';
 
 const MAP = 512; // pixels of a side's shadow map
-const POINT = 0, NORMAL = 1; // attributes, alike in all programs
-const rgb = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255);
+export const POINT = 0, NORMAL = 1, APART = 2; // attributes, alike in all programs of surfaces
+export const rgb = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255);
 
 export const THEMES = {
-    light: { back: '#f4f5f7', floor: '#e9ebee', ink: '#8c939d', stone: '#b4b8be', darkness: 0.42,
-        sides: ['#0072b2', '#d55e00'] },
-    dark: { back: '#15181d', floor: '#20242b', ink: '#5b6370', stone: '#7d838c', darkness: 0.75,
+    light: { name: 'light', back: '#f4f5f7', floor: '#e9ebee', ink: '#8c939d', stone: '#b4b8be',
+        darkness: 0.42, sides: ['#0072b2', '#d55e00'] },
+    dark: { name: 'dark', back: '#15181d', floor: '#20242b', ink: '#5b6370', stone: '#7d838c', darkness: 0.75,
         sides: ['#3c97cf', '#e57a2a'] },
 };
 const HELD = rgb('#f0e442');
@@ -24,12 +24,13 @@ function compile(gl, kind, text) {
 }
 
 // A program, and where its uniforms are.
-function link(gl, vertex, fragment) {
+export function link(gl, vertex, fragment) {
     const program = gl.createProgram();
     gl.attachShader(program, compile(gl, gl.VERTEX_SHADER, vertex));
     gl.attachShader(program, compile(gl, gl.FRAGMENT_SHADER, fragment));
     gl.bindAttribLocation(program, POINT, 'point');
     gl.bindAttribLocation(program, NORMAL, 'normal');
+    gl.bindAttribLocation(program, APART, 'apart');
     gl.linkProgram(program);
     if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
     const at = {};
@@ -41,7 +42,7 @@ function link(gl, vertex, fragment) {
 }
 
 // Buffers of one surface on the graphics card.
-class Mesh {
+export class Mesh {
     constructor(gl) {
         this.gl = gl;
         this.array = gl.createVertexArray();
@@ -124,6 +125,7 @@ export class Picture {
     setScene(bounds, obstacles) {
         this.stones.set(meshObstacles(obstacles));
         for (const one of [...this.bodies, this.carry]) one.version = undefined; // numbers of another scene
+        this.inside?.opened();
         const middle = add(bounds.low, bounds.high).map((x) => x / 2);
         const reach = 0.5 * Math.hypot(...add(bounds.high, bounds.low, -1)) || 1;
         this.grounds = findGrounds(bounds, obstacles).map(({ point, normal }) => {
@@ -135,7 +137,10 @@ export class Picture {
         });
     }
 
-    setSurface(side, surface) { this.bodies[side].set(surface); }
+    setSurface(side, surface) {
+        this.bodies[side].set(surface);
+        this.inside?.moved(side);
+    }
 
     // Is there no graphics card, and shaders run on the processor?
     isSoftware() {
@@ -149,6 +154,7 @@ export class Picture {
         const body = this.bodies[side];
         body.setTriangles(carried);
         this.carry.run(carried, places, body.points, body.normals);
+        this.inside?.moved(side);
     }
 
     // Points and normals as they are on the graphics card.
@@ -206,6 +212,12 @@ export class Picture {
         gl.depthMask(true);
     }
 
+    // Its surface; `as` are values of surface.frag for this time.
+    drawBody(side, { light, theme }, as = {}) {
+        this.use(this.surface, { ...light, colour: rgb(theme.sides[side]), gloss: 0.12, ...as });
+        this.bodies[side].draw();
+    }
+
     drawDots(grips, view, size) {
         const { gl } = this;
         if (!grips.length) return;
@@ -231,12 +243,13 @@ export class Picture {
         const view = camera.matrix(box.width / box.height);
         const { right, up, back } = camera.axes();
         const lamp = unit(add(add(back.map((x) => 0.7 * x), right, -0.45), up, 0.75));
-        const light = { view, eye: camera.eye(), lamp };
+        const light = { view, eye: camera.eye(), lamp, most: 0, clearness: 0 };
+        const scene = { box, camera, light, theme, ratio };
         this.use(this.surface, { ...light, colour: rgb(theme.stone), gloss: 0.02 });
         this.stones.draw();
-        this.use(this.surface, { ...light, colour: rgb(theme.sides[side]), gloss: 0.12 });
-        this.bodies[side].draw();
+        if (!this.inside?.drawBefore(side, scene)) this.drawBody(side, scene);
         this.drawGrounds(side, view, theme);
+        this.inside?.drawAfter(side, scene);
         this.drawDots(grips, view, 13 * ratio);
         gl.disable(gl.SCISSOR_TEST);
     }

@@ -73,6 +73,7 @@ window.shapebench = {
             camera: app.camera,
             files: app.files,
             film: app.film,
+            inside: app.inside,
             advance: (frames) => app.advance(frames),
             copyViews: (canvas) => app.copyViews(canvas),
             pause: () => app.pause(true),
