@@ -12,6 +12,8 @@ const TONES = {
 };
 export const tones = (theme) => TONES[theme.name];
 
+const TOGETHER = 5; // pixels of a cell below which bars cannot be told apart, and are left out
+
 // Pairs of a box's corners.
 const EDGES = [0, 1, 2].flatMap((d) =>
     [...Array(8).keys()].filter((c) => !(c >> d & 1)).map((c) => [c, c | 1 << d]));
@@ -39,13 +41,13 @@ class Instances {
         this.count = values.length / this.each;
     }
 
-    draw(mode, vertices) {
+    draw(mode, vertices, count = this.count) {
         this.gl.bindVertexArray(this.array);
-        this.gl.drawArraysInstanced(mode, 0, vertices, this.count);
+        this.gl.drawArraysInstanced(mode, 0, vertices, count);
     }
 }
 
-// The lines that show what sums a region, as { from, to, colour, width }.
+// The lines from a particle to its goal, and those that show what sums its region: from, to, colour, width.
 function linesOf(mark, points, colours) {
     const lines = [];
     const at = (particle) => points.subarray(3 * particle, 3 * particle + 3);
@@ -57,6 +59,7 @@ function linesOf(mark, points, colours) {
         if (!bars[bar].length) plates[plate].push(bars[bar]);
         bars[bar].push(particle);
     }
+    add(at(mark.particle), mark.goal, colours.marked, 2.5);
     for (const plate of plates) { // round its bars' ends
         const ends = [...plate.map((bar) => bar[0]), ...plate.map((bar) => bar.at(-1)).reverse()];
         ends.forEach((end, i) => add(at(end), at(ends[(i + 1) % ends.length]), colours.plate, 1.5));
@@ -69,7 +72,6 @@ function linesOf(mark, points, colours) {
         const colour = colours.levels[Math.min(7, box[BOX - 1])];
         for (const [a, b] of EDGES) add(corner(a), corner(b), colour, 2.5);
     }
-    add(at(mark.particle), mark.goal, colours.marked, 2.5);
     return new Float32Array(lines);
 }
 
@@ -139,7 +141,7 @@ export class InsidePicture {
         const at = (particle) => [...points.subarray(3 * particle, 3 * particle + 3)];
         const places = new Float32Array([...order.flatMap(at), ...mark.goal]);
         dots.set({ points: places, normals: places, indices: new Uint32Array(0) });
-        this.sides[side].members = order.length - 1;
+        Object.assign(this.sides[side], { members: order.length - 1, bars: mark.bars });
     }
 
     wireValues(theme, { camera, light }) {
@@ -231,14 +233,15 @@ export class InsidePicture {
     drawMark(side, scene) {
         const { gl, picture } = this;
         const { box, ratio, theme } = scene;
-        const { lines, dots, members } = this.sides[side];
+        const { bars, dots, lines, members } = this.sides[side];
         const colours = tones(theme);
         const dot = (...of) => this.drawDots(dots.array, scene, ...of);
         gl.clear(gl.DEPTH_BUFFER_BIT);
         this.blend();
         const screen = [box.width / 2, box.height / 2, this.pixels(scene, 0.12, 0.5, 1)];
         picture.use(this.line, { ...this.wireValues(theme, scene), strength: 1, screen });
-        lines.draw(gl.TRIANGLE_STRIP, 4);
+        const together = bars && this.pixels(scene, 1, 0, Infinity) < TOGETHER * ratio;
+        lines.draw(gl.TRIANGLE_STRIP, 4, together ? 1 : lines.count);
         gl.disable(gl.DEPTH_TEST);
         dot(this.pixels(scene, 0.5, 3, 8), colours.member, 0, members);
         dot(13 * ratio, colours.marked, members, 1);
