@@ -351,6 +351,19 @@ TEST(differences_are_of_the_same_vertex)
     assert_non_null(strstr(view_not_comparable(), "has been cut"));
 }
 
+/* Naive sums have no bars, and regions all the same. */
+TEST(naive_sums_have_no_bars)
+{
+    const char *text = "mesh = \"shape:block\"; particles = 300; w = 2; summation = \"naive\";";
+    strcpy(view_room((int)strlen(text)), text);
+    assert_int_equal(view_open((int)strlen(text), 0), 0);
+    long members = view_mark(VIEW_LATTICE, 40);
+    const int(*member)[3] = (const int(*)[3])view_members(VIEW_LATTICE);
+    assert_true(members > 26 && view_mark_figure(VIEW_LATTICE, VIEW_BARS) == 0);
+    assert_true(view_mark_figure(VIEW_LATTICE, VIEW_PLATES) == 0);
+    for (long i = 0; i < members; i++) assert_true(member[i][1] == 0 && member[i][2] == 0);
+}
+
 TEST(numbers_that_nothing_has_do_nothing)
 {
     open_scene("penguin", 0);

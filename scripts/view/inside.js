@@ -125,7 +125,7 @@ export class Inside {
             [found, least, nearest] = [p, off, w];
         }
         if (found < 0 || found === this.marks[side]?.particle) return;
-        this.marks[side] = { particle: found };
+        this.marks[side] = { particle: found, particles: points.length / 3 };
         this.again();
     }
 
@@ -174,9 +174,11 @@ export class Inside {
     }
 
     showMark(side, theme) {
-        if (!this.marks[side]) return;
-        const mark = this.data.mark(side, this.marks[side].particle);
-        this.marks[side] = mark;
+        const was = this.marks[side];
+        if (!was) return;
+        const particles = this.app.engine.figure(side, 'particles'); // others: numbers mean others, too
+        const mark = was.particles === particles ? this.data.mark(side, was.particle) : null;
+        this.marks[side] = mark && { ...mark, particles };
         const words = mark ? this.describe(side, mark) : '';
         if (this.lines[side].textContent !== words) this.lines[side].textContent = words;
         if (mark) this.picture.setMark(side, mark, this.data.points(side), theme);
@@ -205,6 +207,9 @@ export class Inside {
             rows.push(make('span', { textContent: `Distance from ${SIDES[1 - side]}` }),
                 make('div', { className: 'ramp' }), make('div', { className: 'scale' }, none, most));
         }
+        const key = `${theme.name} ${rows.map((row) => row.textContent)}`; // frames that change nothing
+        if (this.legends[side].dataset.key === key) return;
+        this.legends[side].dataset.key = key;
         this.legends[side].replaceChildren(...rows);
     }
 
