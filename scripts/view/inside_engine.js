@@ -55,8 +55,10 @@ export class InsideEngine {
         return { points: this.floats(points, count), normals: this.floats(normals, count) };
     }
 
-    // Cells between each vertex and that of the other side; empty where they cannot be compared.
+    // Cells between each vertex and that of the other side, both found anew: the shader may have drawn them.
+    // Empty where they cannot be compared.
     difference(side) {
+        for (const one of this.engine.present()) this.call.view_surface(one);
         const at = this.call.view_difference(side);
         return this.floats(at, this.call.view_vertices(side));
     }
