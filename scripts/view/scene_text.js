@@ -86,7 +86,8 @@ export function getNumber(text, path) {
 export function getNumbers(text, path) {
     const value = getSetting(text, path);
     if (!value || !/^[[(]/.test(value)) return undefined;
-    return value.slice(1, -1).split(',').map(Number);
+    const bare = value.slice(1, -1).replace(/#[^\n]*|\/\/[^\n]*|\/\*[\s\S]*?\*\//g, '');
+    return bare.split(',').map(Number);
 }
 
 // The text of a string setting without its quotes.

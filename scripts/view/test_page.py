@@ -107,6 +107,9 @@ class Page(PageCase):
         for text, path, value, wanted in cases:
             self.assertEqual(self.ask(SET, text, path, value), wanted)
             self.assertEqual(self.ask(GET, wanted, path), float(value))
+        numbers = self.ask("return (await import('view/scene_text')).getNumbers(...values)",
+                           "gravity = [0.0, /* 1, */ -9.81, # up, 2\n 0.5];", "gravity")
+        self.assertEqual(numbers, [0, -9.81, 0.5])
         whole = self.ask("return shapebench.engine.sceneText('liver')")
         self.ask("const m = await import('view/scene_text'); for (let end = 0; end <= values[0].length; end++) "
                  "m.getNumber(m.setSetting(values[0].slice(0, end), 'w', 4), 'w')", whole)  # it ends
