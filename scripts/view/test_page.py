@@ -138,7 +138,7 @@ class Page(PageCase):
     def test_every_knob_changes_its_setting(self):
         """By the keyboard: the scene's text says what the knob does, the engines take it, and nothing is refused."""
         self.open("hand-sampled")
-        for knob in self.driver.find_elements("css selector", ".knob input, .knob select"):
+        for knob in self.driver.find_elements("css selector", "#knobs input, #knobs select"):
             before = self.ask("return shapebench.text()")
             name = knob.get_attribute("id")
             options = [option.text for option in knob.find_elements("tag name", "option")]
