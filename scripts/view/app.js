@@ -119,7 +119,7 @@ export class App {
 
     frame() {
         if (!this.stage) return;
-        const { width, height } = this.views[0].getBoundingClientRect();
+        const { width, height } = this.views[this.engine.only ?? 0].getBoundingClientRect();
         this.camera.frame(this.stage, width / height);
         this.changed();
     }
@@ -183,6 +183,7 @@ export class App {
         if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
         const theme = THEMES[document.documentElement.dataset.theme];
         this.boxes().forEach((box, side) => {
+            if (!box.width) return; // hidden
             this.picture.drawSide(side, box, this.camera, this.engine.grips(side), theme, ratio);
         });
         this.stale = false;
@@ -226,6 +227,14 @@ export class App {
         $('pause').textContent = paused ? 'Play' : 'Pause';
     }
 
+    // Shows and steps one side alone, or both (undefined), from the scene's beginning: so both are at one time.
+    async showOnly(side) {
+        this.engine.only = side;
+        $('views').dataset.only = side ?? '';
+        await this.reset();
+        this.frame();
+    }
+
     async reset() { this.say(await this.open(this.text, false)); }
 
     once() {
@@ -252,7 +261,8 @@ export class App {
 
     // Copies both views, as they have just been drawn, onto a canvas, with names and times.
     copyViews(copy) {
-        const time = (side) => (this.engine.absent(side) ? ''
+        const shown = this.engine.present();
+        const time = (side) => (!shown.includes(side) ? ''
             : `${SIDES[side]}, ${this.engine.figure(side, 'time').toFixed(2)} s`);
         const ink = getComputedStyle(document.body).color;
         copyWithCaptions(copy, $('canvas'), this.boxes(), [time(0), time(1)], ink);

@@ -102,8 +102,12 @@ export class Engine {
     absent(side) { return this.string(this.call.view_absent(side)); }
     step(side, steps) { this.call.view_step(side, steps); }
 
-    // The sides that are there.
-    present() { return [0, 1].filter((side) => !this.absent(side)); }
+    // The sides that are there and shown; one of them at least, if any is there.
+    present() {
+        const there = [0, 1].filter((side) => !this.absent(side));
+        const shown = there.filter((side) => this.only === undefined || side === this.only);
+        return shown.length ? shown : there;
+    }
 
     figure(side, name) { return this.call.view_figure(side, FIGURES.indexOf(name)); }
     stages(side) { return STAGES.map((name, stage) => this.call.view_stage_ms(side, stage)); }

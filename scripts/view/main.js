@@ -22,6 +22,7 @@ function wire(app) {
         original: () => app.visit(app.original),
     };
     if (app.picture.isSoftware()) $('carrier').value = 'processor';
+    $('sides').addEventListener('change', () => app.showOnly([undefined, 0, 1][$('sides').selectedIndex]));
     $('carrier').addEventListener('change', () => app.showSurfaces());
     for (const tool of document.querySelectorAll('#tools input'))
         tool.addEventListener('change', () => app.tools.choose(tool.value));

@@ -135,9 +135,11 @@ export class Panel {
 
     // The figures now, and the lines up to now.
     show(meters) {
+        const shown = this.app.engine.present();
         FIGURES.forEach(([, what, only], row) => meters.forEach((meter, side) => {
             const value = typeof what === 'string' ? this.app.engine.figure(side, what) : what(meter);
-            this.rows[row][side].textContent = only === undefined || only === side ? short(value) : '–';
+            const has = shown.includes(side) && (only === undefined || only === side);
+            this.rows[row][side].textContent = has ? short(value) : '–';
         }));
         this.bars.forEach((cells, stage) => meters.forEach((meter, side) => {
             setBar(cells[side], meter.shares[stage], this.app.engine.paperPercent(side, stage));

@@ -42,7 +42,7 @@ export function copyWithCaptions(copy, canvas, boxes, captions, ink) {
     pen.setTransform(copy.width / canvas.width, 0, 0, copy.height / canvas.height, 0, 0);
     pen.drawImage(canvas, 0, 0);
     pen.fillStyle = ink;
-    const size = Math.round(boxes[0].height / 28);
+    const size = Math.round(Math.max(...boxes.map((box) => box.height)) / 28);
     pen.font = `${size}px sans-serif`;
     boxes.forEach((box, side) => {
         pen.fillText(captions[side], box.x + size, canvas.height - box.y - box.height + 1.8 * size);

@@ -10,7 +10,7 @@ import numpy
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.keys import Keys
 
-from page_case import PROGRAM, SIDES, PageCase
+from page_case import PROGRAM, SETTLE, SIDES, PageCase
 
 SCENES = ("hand-lattice", "hand-sampled", "penguin", "infant-bones", "liver", "flowers", "beam", "statue-shell",
           "penguins-collide")
@@ -151,6 +151,23 @@ class Page(PageCase):
                 before = after
         for setting in ('weighting = "plain"', "widths = ( {", "near = ", 'polar = "jacobi"', 'summation = "naive"'):
             self.assertIn(setting, before)
+
+    def test_one_side_alone(self):
+        """It fills the view, and the other takes no time; both begin anew together."""
+        self.open("penguin")
+        show = self.driver.find_element("id", "sides")
+        wide = self.driver.find_element("id", "views").rect["width"]
+        for keys, side in ((Keys.ARROW_DOWN, 0), (Keys.ARROW_DOWN, 1)):
+            show.send_keys(keys)
+            self.ask(SETTLE)
+            self.assertAlmostEqual(self.driver.find_element("id", f"view-{side}").rect["width"], wide, delta=2)
+            self.ask("shapebench.advance(20)")
+            self.assertGreater(self.figure(side, "time"), 0)
+            self.assertEqual(self.figure(1 - side, "time"), 0)
+            self.assertEqual(list(self.ask(LOOK)), [str(side)])
+        show.send_keys(Keys.ARROW_UP * 2)
+        self.ask(SETTLE)
+        self.assertEqual([self.figure(side, "time") for side in (0, 1)], [0, 0])
 
     def test_the_papers_shares_stand_beside(self):
         self.open("statue-shell")
