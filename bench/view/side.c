@@ -47,6 +47,22 @@ void view_side_create(const BenchScene *scene, const BenchBody *body, const char
     view_side_draw(side);
 }
 
+void view_side_push_as(ViewSide *side, const ViewSide *own)
+{
+    if (!view_side_is_there(side) || !view_side_is_there(own)) return;
+    const long *wanted = own->play.group[0].runner.push_first;
+    for (int i = 0; i < side->scene.force_count; i++) {
+        const long *pushed = side->play.group[0].runner.push_first;
+        double share = (double)wanted[i] / (double)pushed[i];
+        for (int d = 0; d < 3; d++) side->scene.force[i].force[d] *= share;
+        for (int g = 0; g < side->play.count; g++) {
+            BenchRunner *runner = &side->play.group[g].runner;
+            for (long n = 0; n < runner->push_count[i]; n++)
+                for (int d = 0; d < 3; d++) runner->push_impulse[i][n][d] *= share;
+        }
+    }
+}
+
 /* What is drawn and belongs to one structure of the surface. */
 static void free_surface(ViewSide *side)
 {

@@ -30,6 +30,10 @@ void view_side_create(const BenchScene *scene, const BenchBody *body, const char
                       const ViewAllowed *allowed, ViewSide *side);
 void view_side_free(ViewSide *side);
 
+/* Pushes each body as hard in all as `own` does, the side of the engine that the scene is for: its
+ * forces are newtons a particle, of that engine's. Nothing where either is absent. */
+void view_side_push_as(ViewSide *side, const ViewSide *own);
+
 bool view_side_is_there(const ViewSide *side);
 
 /* The side of this number (view.h) if it is open and there, or NULL. */

@@ -294,6 +294,27 @@ TEST(a_touch_refines)
     assert_true(view_figure(side, VIEW_PARTICLES) == nodes);
 }
 
+/* A scene's forces are newtons a particle of its own engine; the other side is pushed as hard. */
+TEST(forces_push_both_sides_alike)
+{
+    static const char *const engine[] = {"fastlsm", "octree"};
+    for (int own = 0; own < 2; own++) {
+        char text[512];
+        snprintf(
+            text, sizeof text,
+            "mesh = \"shape:block\"; particles = 700; octree = { levels = 1; }; engine = \"%s\";"
+            "forces = ( { box_low = [0.0, 0.0, 0.0]; box_high = [1.0, 1.0, 1.0];"
+            "force = [2.0, 0.0, 0.0]; start = 0.0; stop = 9.0; } );",
+            engine[own]);
+        open_scene(text);
+        double wanted = 2 * view_figure(own, VIEW_PARTICLES) * 20 * view_figure(own, VIEW_H);
+        for (int side = 0; side < VIEW_SIDES; side++) {
+            view_step(side, 20);
+            assert_true(fabs(view_figure(side, VIEW_MOMENTUM) / wanted - 1) < 1e-3);
+        }
+    }
+}
+
 /* The wind moves what is free as far on both sides. */
 TEST(wind_pushes_both_sides)
 {

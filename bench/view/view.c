@@ -149,6 +149,8 @@ int view_open(int bytes, int keep)
         side[s] = sm_alloc(1, sizeof *side[s]);
         view_side_create(&scene, body, engine[s], allowed, side[s]);
     }
+    int own = strcmp(scene.engine, engine[VIEW_OCTREE]) == 0 ? VIEW_OCTREE : VIEW_LATTICE;
+    view_side_push_as(side[!own], side[own]);
     if (!view_side_is_there(side[VIEW_LATTICE]) && !view_side_is_there(side[VIEW_OCTREE])) {
         error = side[VIEW_LATTICE]->absent;
         close_sides(side, body);
