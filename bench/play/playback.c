@@ -72,6 +72,7 @@ bool bench_playback_changes(const BenchPlayback *play)
 static SmCode change_until(BenchPlayback *play, double to, SmError *error)
 {
     SmCode code = SM_OK;
+    for (int i = 0; i < play->count; i++) play->group[i].last = (BenchChanged){0};
     for (int i = 0; i < play->count && !code; i++)
         if (bench_group_changes(&play->group[i]))
             code = bench_group_frame(&play->group[i], play->time, to, error);

@@ -144,18 +144,16 @@ typedef struct {
     OctReach search;
 } Carried;
 
-/* The body among whose nodes is number `first` of the group. */
-static void carry(const BenchGroup *group, long first, Carried *carried)
+/* The body among whose nodes, at `node`, is number `first` of the group. */
+static void carry(const BenchGroup *group, const double (*node)[3], long first, Carried *carried)
 {
     const BenchRunner *runner = &group->runner;
-    double(*node)[3] = get_field(group, SM_POSITION);
     *carried = (Carried){.structure = oct_engine_structure(runner->engine),
                          .leaf = oct_engine_leaves(runner->engine)};
     carried->x = sm_alloc((size_t)carried->structure->tree.leaves, sizeof *carried->x);
     for (long p = 0; p < runner->count; p++)
         memcpy(carried->x[carried->leaf[p]], node[first / runner->count * runner->count + p],
                sizeof *carried->x);
-    free(node);
 }
 
 static void carried_free(Carried *carried)
@@ -174,9 +172,10 @@ static void find_gradient(Carried *carried, int leaf, double F[9])
 static void put_cells(const BenchGroup *group, float *cell)
 {
     const BenchRunner *runner = &group->runner;
+    double(*place)[3] = get_field(group, SM_POSITION);
     for (long first = 0; first < runner->particles; first += runner->count) {
         Carried carried;
-        carry(group, first, &carried);
+        carry(group, (const double(*)[3])place, first, &carried);
         const OctTree *tree = &carried.structure->tree;
         for (long p = 0; p < runner->count; p++, cell += VIEW_CELL_NUMBERS) {
             double F[9], half = 0.25 * carried.structure->cell; /* of half a finest cell */
@@ -189,6 +188,7 @@ static void put_cells(const BenchGroup *group, float *cell)
         }
         carried_free(&carried);
     }
+    free(place);
 }
 
 int view_cells(int number)
@@ -312,7 +312,9 @@ static void mark_summation_nodes(struct Inside *in, const BenchGroup *group, lon
                                  int (*member)[3], long count, long first)
 {
     Carried carried;
-    carry(group, p, &carried);
+    double(*place)[3] = get_field(group, SM_POSITION);
+    carry(group, (const double(*)[3])place, p, &carried);
+    free(place);
     const OctStructure *s = carried.structure;
     const SmCsr *rows = &s->regions.members;
     long each = group->runner.count, leaf = carried.leaf[p % each];
@@ -331,6 +333,8 @@ int view_mark(int number, int particle)
 {
     long first;
     const BenchGroup *group = group_of(view_side_of(number), particle, &first);
+    if (number >= 0 && number < VIEW_SIDES)
+        memset(inside[number].figure, 0, sizeof inside[number].figure);
     if (!group) return 0;
     struct Inside *in = &inside[number];
     const BenchRunner *runner = &group->runner;
@@ -341,7 +345,6 @@ int view_mark(int number, int particle)
     for (long i = 0; i < count; i++)
         memcpy(member[i], (int[3]){(int)(first + region[i])}, sizeof *member);
     free(region);
-    memset(in->figure, 0, sizeof in->figure);
     mark_goal(in, group, particle - first);
     if (runner->type->bars)
         mark_bars(in, group, particle - first, member, count);

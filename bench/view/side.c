@@ -67,6 +67,7 @@ void view_side_push_as(ViewSide *side, const ViewSide *own)
 static void free_surface(ViewSide *side)
 {
     sm_free_all(side->place, side->normal, side->point32, side->normal32, side->index);
+    side->vertices = side->triangles = 0;
     side->place = side->normal = NULL;
     side->point32 = side->normal32 = NULL;
     side->index = NULL;
@@ -140,7 +141,6 @@ void view_side_go_on(ViewSide *side, const ViewSide *from)
     for (int g = 0; g < side->play.count; g++) side->play.group[g].runner.time = from->play.time;
     side->play.time = from->play.time;
     side->steps = from->steps;
-    memcpy(side->tools.wind, from->tools.wind, sizeof side->tools.wind);
     memcpy(side->grips.followed, from->grips.followed, sizeof side->grips.followed);
 }
 
@@ -166,7 +166,11 @@ static void change(ViewSide *side, const ViewHand *hand)
 
 bool view_side_cut(ViewSide *side, const double a[3], const double b[3], const ViewHand *hand)
 {
-    if (side->tools.blade < 0) return false;
+    const long most = 100000; /* that cuts may have added: then each takes seconds */
+    long vertices, triangles;
+    bench_playback_size(&side->play, &vertices, &triangles);
+    if (side->tools.blade < 0 || triangles - side->play.body->mesh.triangle_count > most)
+        return false;
     view_tools_cut(&side->tools, &side->scene, &side->play, a, b);
     follow_change(side, hand);
     return true;
@@ -214,10 +218,11 @@ void view_side_motion(const ViewSide *side, double *energy, double *momentum)
 
 static void make_surface(ViewSide *side)
 {
+    static int made; /* of any side */
     SmMesh mesh = bench_playback_surface(&side->play);
     size_t vertices = (size_t)mesh.vertex_count, triangles = (size_t)mesh.triangle_count;
     free_surface(side);
-    side->generation++;
+    side->generation = ++made;
     side->vertices = mesh.vertex_count;
     side->triangles = mesh.triangle_count;
     side->place = sm_alloc(vertices, sizeof *side->place);

@@ -52,7 +52,8 @@ void view_side_go_on(ViewSide *side, const ViewSide *from);
  * even parts, so that it has their velocity when it is let go. */
 void view_side_step(ViewSide *side, int steps, const ViewHand *hand);
 
-/* Moves the blade, at once (tools.h), and finds what hands hold again; false: it may not cut. */
+/* Moves the blade, at once (tools.h), and finds what hands hold again; false: it may not cut, or
+ * has made so many triangles already that it would take seconds. */
 bool view_side_cut(ViewSide *side, const double a[3], const double b[3], const ViewHand *hand);
 
 /* The body and the place at rest of a vertex that is drawn; false: there is none such. */

@@ -359,6 +359,9 @@ TEST(bodies_are_of_a_size)
     assert_non_null(strstr(view_message(), "a page takes 1e6"));
     assert_int_equal(opened("mesh = \"shape:block\"; particles = 8; instances = 100000;", 0),
                      SM_MEMORY);
+    assert_int_equal(opened("mesh = \"shape:penguin\"; particles = 100; instances = 10000;", 0),
+                     SM_MEMORY);
+    assert_non_null(strstr(view_message(), "triangles in 10000 bodies"));
     assert_true(view_figure(0, VIEW_PARTICLES) > 500);
 }
 

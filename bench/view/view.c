@@ -17,6 +17,7 @@ static struct {
     ViewSide *side[VIEW_SIDES];
     ViewHand hand[VIEW_HANDS];
     ViewAllowed allowed;
+    double wind[3];
     double bounds[6], middle[3], obstacle[8];
 } view;
 
@@ -98,6 +99,7 @@ static void replace(ViewSide *side[VIEW_SIDES], BenchBody *body, bool keep)
     for (int s = 0; s < VIEW_SIDES; s++) {
         if (view_side_is_there(side[s]))
             view_grips_hold(&side[s]->grips, &side[s]->play, view.hand, true);
+        memcpy(side[s]->tools.wind, view.wind, sizeof view.wind);
         view_side_draw(side[s]);
     }
     if (!same) find_bounds();
@@ -115,6 +117,17 @@ static SmCode check_size(const BenchScene *scene, SmError *error)
                    wanted, scene->instances);
 }
 
+/* What is drawn of all bodies, which takes more memory than they do. */
+static SmCode check_surface(const BenchScene *scene, const SmMesh *mesh, SmError *error)
+{
+    const double most = 5e6;
+    double triangles = (double)mesh->triangle_count * (double)scene->instances;
+    if (triangles <= most) return SM_OK;
+    return sm_fail(error, SM_MEMORY,
+                   "scene: %.3g triangles in %ld bodies; a page takes 5e6: ask for fewer bodies",
+                   triangles, scene->instances);
+}
+
 /* Of the program's shapes, or of the mesh that was given. A page takes fewer particles rather than
  * none where so many take too large a lattice. */
 static SmCode make_body(BenchScene *scene, BenchBody *body, SmError *error)
@@ -126,7 +139,10 @@ static SmCode make_body(BenchScene *scene, BenchBody *body, SmError *error)
                        "scene: 'vertex_mass' names a file of masses, and a page takes none: give "
                        "'density'");
     SmCode code = view_given_load(scene->mesh, &mesh, error);
-    return code ? code : bench_body_create(scene, &mesh, body, error);
+    if (!code) code = check_surface(scene, &mesh, error);
+    if (!code) return bench_body_create(scene, &mesh, body, error);
+    sm_mesh_free(&mesh);
+    return code;
 }
 
 int view_open(int bytes, int keep)
@@ -397,13 +413,15 @@ int view_may_touch(int side, int instance)
            view_tools_may_touch(&side_of(side)->tools, &side_of(side)->scene, instance);
 }
 
-void view_cut(double ax, double ay, double az, double bx, double by, double bz)
+int view_cut(double ax, double ay, double az, double bx, double by, double bz)
 {
     const double a[3] = {ax, ay, az}, b[3] = {bx, by, bz};
+    int cut = 0;
     for (int d = 0; d < 3; d++)
-        if (!isfinite(a[d]) || !isfinite(b[d])) return;
+        if (!isfinite(a[d]) || !isfinite(b[d])) return 0;
     for (int s = 0; s < VIEW_SIDES; s++)
-        if (side_of(s)) view_side_cut(side_of(s), a, b, view.hand);
+        if (side_of(s)) cut += view_side_cut(side_of(s), a, b, view.hand);
+    return cut;
 }
 
 void view_lift(void)
@@ -439,6 +457,7 @@ void view_leave(void)
 void view_blow(double x, double y, double z)
 {
     if (!isfinite(x) || !isfinite(y) || !isfinite(z)) return;
+    memcpy(view.wind, (double[3]){x, y, z}, sizeof view.wind);
     for (int s = 0; s < VIEW_SIDES; s++)
-        if (side_of(s)) memcpy(side_of(s)->tools.wind, (double[3]){x, y, z}, sizeof(double[3]));
+        if (side_of(s)) memcpy(side_of(s)->tools.wind, view.wind, sizeof view.wind);
 }

@@ -18,9 +18,9 @@ const char *view_scene_text(const char *name);
 char *view_room(int bytes);
 
 /* Reads the text in that room as a scene file, and makes both sides anew, at rest and then
- * disturbed as it says. With `keep` positions and velocities go on where a side has as many
- * particles as before. 0; or else nothing has changed, and view_message() is the line that says
- * why. */
+ * disturbed as it says. With `keep` positions and velocities go on where both sides' bodies are of
+ * as many particles as before, and none is cut or broken. 0; or else nothing has changed, and
+ * view_message() is the line that says why. */
 int view_open(int bytes, int keep);
 const char *view_message(void);
 
@@ -97,8 +97,9 @@ void view_allow_touch(int instance);
 int view_may_cut(int side);
 int view_may_touch(int side, int instance);
 
-/* The blade of both sides, moved at once to the segment from a to b; then taken out. */
-void view_cut(double ax, double ay, double az, double bx, double by, double bz);
+/* The blade of both sides, moved at once to the segment from a to b; then taken out. How many sides
+ * it may cut: none of one that has been cut into so much that each cut would take seconds. */
+int view_cut(double ax, double ay, double az, double bx, double by, double bz);
 void view_lift(void);
 
 /* The body that a vertex of a side belongs to, or -1. */

@@ -43,8 +43,15 @@ export class App {
         if (this.text) this.panel.show(this.meters);
     }
 
-    // Opens a scene's text; '' or why not, and then all is as before. `keep`: motion goes on.
-    async open(text, keep) {
+    // Opens a scene's text, or what a function makes of the one that is open when its turn comes; '' or why
+    // not, and then all is as before. `keep`: motion goes on.
+    open(text, keep) {
+        const turn = () => this.openNow(typeof text === 'function' ? text() : text, keep);
+        this.opening = (this.opening ?? Promise.resolve()).then(turn, turn);
+        return this.opening;
+    }
+
+    async openNow(text, keep) {
         this.busy = true;
         this.say('Building …');
         await nextPaint();
@@ -67,6 +74,7 @@ export class App {
         this.stage = findStage(bounds, obstacles);
         if (!keep) this.meters.forEach((meter) => meter.clear());
         if (!keep) this.hands.forget();
+        if (!keep) this.panel.forget();
         this.meters.forEach((meter) => meter.begin());
         this.cost = 0;
         this.views.forEach((view, side) => {
@@ -194,7 +202,8 @@ export class App {
         if (this.busy || !this.text || now - this.last < FRAME_MS - 1) return;
         this.last = Math.max(this.last, now - 2 * FRAME_MS) + FRAME_MS;
         try {
-            this.tools.frame();
+            await this.tools.frame();
+            if (this.busy) return;
             if (this.playing) this.play();
             if (this.stale) {
                 this.draw();
@@ -204,12 +213,25 @@ export class App {
             this.shown = now;
             this.show(false);
         } catch (trap) {
-            this.busy = true;
-            this.playing = this.stale = false;
-            $('pause').textContent = 'Play';
-            this.say(await this.recover(trap));
-            this.busy = false;
+            await this.halt(trap);
         }
+    }
+
+    // Does something with the engines beside frames.
+    async guard(work) {
+        try {
+            await work();
+        } catch (trap) {
+            await this.halt(trap);
+        }
+    }
+
+    async halt(trap) {
+        this.busy = true;
+        this.playing = this.stale = false;
+        $('pause').textContent = 'Play';
+        this.say(await this.recover(trap));
+        this.busy = false;
     }
 
     // Frames one after the other, each with all its steps, whatever time they take.
@@ -235,7 +257,7 @@ export class App {
         this.frame();
     }
 
-    async reset() { this.say(await this.open(this.text, false)); }
+    async reset() { this.say(await this.open(() => this.text, false)); }
 
     once() {
         this.pause(true);

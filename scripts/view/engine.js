@@ -183,7 +183,7 @@ export class Engine {
     allowTouch(body) { this.call.view_allow_touch(body); }
     mayCut(side) { return this.call.view_may_cut(side) !== 0; }
     mayTouch(side, body) { return this.call.view_may_touch(side, body) !== 0; }
-    cut(a, b) { this.call.view_cut(...a, ...b); }
+    cut(a, b) { return this.call.view_cut(...a, ...b) > 0; }
     lift() { this.call.view_lift(); }
     body(side, vertex) { return this.call.view_body(side, vertex); }
     touch(side, vertex, radius) { this.call.view_touch(side, vertex, radius); }

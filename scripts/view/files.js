@@ -49,9 +49,10 @@ export class Files {
                 refused = `${plainName(file.name)}: ${error.message}`;
             }
         }
-        refused ||= await this.show(text, name).catch((error) => error.message);
-        if (refused) given.meshes = before;
-        this.app.say(refused);
+        if (!text && !name) return this.app.say(refused);
+        const why = await this.show(text, name).catch((error) => error.message);
+        if (why) given.meshes = before;
+        return this.app.say(why || refused); // what comes beside a mesh, such as its materials, is not used
     }
 
     // Keeps the mesh of a file's bytes, and returns its name in a scene's text. Throws what is wrong with it.

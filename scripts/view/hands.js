@@ -80,7 +80,7 @@ export class Hands {
 
     release(grip) {
         for (const pointer of this.pointers.values())
-            if (pointer.hold?.grip === grip) pointer.hold = null;
+            if (pointer.hold?.grip === grip) this.spend(pointer);
         if (this.keyHold?.grip === grip) this.keyHold = null;
         this.app.engine.release(grip);
         this.moved.delete(grip);
@@ -95,11 +95,30 @@ export class Hands {
     // All grips are gone: another scene is open.
     forget() {
         this.moved.clear();
+        this.keyUse?.use.drop();
+        this.keyHold = this.keyUse = null;
+        for (const pointer of this.pointers.values()) {
+            pointer.use?.drop();
+            this.spend(pointer);
+        }
+    }
+
+    // A pointer that has lost what it held does nothing more until it comes down again.
+    spend(pointer) {
+        pointer.spent ||= Boolean(pointer.use || pointer.hold);
+        pointer.use = pointer.hold = null;
+        pointer.view.classList.remove('pulling');
+    }
+
+    // Ends all that hands do: another tool is taken up.
+    endAll() {
         this.keyUse?.use.end();
+        if (this.keyHold) this.letGo(this.keyHold, this.keyHold.pinned);
         this.keyHold = this.keyUse = null;
         for (const pointer of this.pointers.values()) {
             pointer.use?.end();
-            pointer.use = pointer.hold = null;
+            if (pointer.hold) this.letGo(pointer.hold, pointer.hold.pinned);
+            this.spend(pointer);
         }
     }
 
@@ -112,7 +131,11 @@ export class Hands {
         view.setPointerCapture(event.pointerId);
         const place = this.place(event, view);
         const limit = (event.pointerType === 'touch' ? TOUCH_REACH : MOUSE_REACH) / place.half;
-        const alone = ![...this.pointers.values()].some((pointer) => !pointer.hold && !pointer.use);
+        for (const pointer of this.pointers.values()) { // the second of two fingers: they turn the view
+            pointer.use?.end();
+            pointer.use = null;
+        }
+        const alone = ![...this.pointers.values()].some((pointer) => !pointer.hold);
         const works = event.button === 0 && alone;
         const use = works ? this.app.tools.begin(side, place) : null;
         const hold = works && !use ? this.take(side, place, limit) : null;
@@ -128,6 +151,7 @@ export class Hands {
         if (!pointer) return;
         const before = pointer.place;
         pointer.place = this.place(event, pointer.view);
+        if (pointer.spent) return;
         if (pointer.use) {
             pointer.use.move(pointer.place);
             return;
@@ -139,7 +163,7 @@ export class Hands {
         }
         const right = (pointer.place.x - before.x) * before.aspect;
         const up = pointer.place.y - before.y;
-        const other = [...this.pointers.values()].find((one) => one !== pointer && !one.hold && !one.use);
+        const other = [...this.pointers.values()].find((one) => one !== pointer && !one.hold && !one.spent);
         if (other) this.pinch(pointer.place, before, other.place, right, up);
         else if (pointer.pan) this.app.camera.pan(right, up);
         else this.app.camera.orbit(1.6 * right, 1.6 * up);
@@ -165,8 +189,9 @@ export class Hands {
 
     key(event) {
         if (event.ctrlKey || event.metaKey || event.altKey) return;
-        if (event.target.closest('input, textarea, select')) return;
-        if (event.key === ' ' && event.target.closest('button, summary, a')) return;
+        if (event.target.closest('textarea, select, input:not([type=radio], [type=checkbox])')) return;
+        const own = event.key === ' ' || (event.target.type === 'radio' && ARROWS[event.key]);
+        if (own && event.target.closest('button, summary, a, input')) return;
         const done = this.useKey(event) || this.pullKey(event) || this.cameraKey(event)
             || this.app.command(event.key);
         if (done) event.preventDefault();

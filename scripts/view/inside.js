@@ -39,7 +39,8 @@ export class Inside {
         this.shown = [false, false];
         this.links = [-1, -1]; // as many as were put into buffers
         this.marks = [null, null];
-        this.most = 0; // the difference's scale, cells
+        this.most = 0; // the difference's scale, cells,
+        this.far = [0, 0]; // and how far it goes on each side
         const group = document.getElementById('inside');
         for (const [name, words, kind] of TOGGLES) group.append(this.toggle(name, words, kind));
         group.append(this.note = make('p', { className: 'note' }));
@@ -167,8 +168,8 @@ export class Inside {
         const apart = this.on.difference && !why ? this.data.difference(side) : NONE;
         this.note.textContent = why;
         this.picture.setApart(side, apart);
-        let far = 0;
-        for (const cells of apart) far = Math.max(far, cells);
+        this.far[side] = apart.reduce((far, cells) => Math.max(far, cells), 0);
+        const far = Math.max(...this.far); // of both sides: they have one scale
         if (!apart.length) this.most = 0;
         else if (far > this.most || far < 0.2 * this.most) this.most = roundUp(Math.max(far, 1e-6));
     }

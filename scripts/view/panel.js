@@ -44,7 +44,7 @@ class Knob {
     // Where the scene's text is refused, the knob goes back, and says why.
     async apply() {
         const { key, set = (text, value) => setSetting(text, key, value) } = this.what;
-        const refused = await this.panel.change(set(this.panel.text, this.value(), this.panel.app));
+        const refused = await this.panel.change((text) => set(text, this.value(), this.panel.app));
         this.note.textContent = this.note.title = refused;
         this.fill(this.panel.text);
     }
@@ -114,7 +114,15 @@ export class Panel {
     }
 
     get text() { return this.app.text; }
-    change(text) { return this.app.open(text, true); }
+
+    // Opens what `change` makes of the text, or a text; motion goes on. '' or why it is refused.
+    change(change) {
+        return this.app.open(typeof change === 'function' ? () => change(this.text) : change, true);
+    }
+
+    // What knobs were about to change was another scene's.
+    forget() { this.knobs.forEach((knob) => clearTimeout(knob.timer)); }
+
     particles() { return this.app.engine.figure(this.app.engine.present()[0], 'particles'); }
 
     row(table, label) {

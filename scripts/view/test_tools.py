@@ -110,9 +110,42 @@ class Tools(PageCase):
         self.open("flowers")
         self.choose("cut")
         self.assertIn("alone", self.driver.find_element("id", "status").text)
+        opened = self.ask("let n = 0; const e = shapebench.engine, open = e.open.bind(e); "
+                          "e.open = (...all) => { n++; return open(...all); }; window.opened = () => n; return n")
+        for _ in range(2):  # it is not tried again and again
+            self.stroke(0, [(0.1, 0.1), (0.2, 0.1)])
+            self.let_go()
+        self.assertEqual(self.ask("return window.opened()"), opened)
+
+    def test_what_hands_do_ends_with_its_tool_and_its_scene(self):
+        self.open("penguin")
+        self.choose("wind")
+        self.stroke(0, [(0.4, 0.5), (0.8, 0.5)])
+        self.choose("pull")  # with the button down
+        view = self.driver.find_element("id", "view-0")
+        self.assertEqual(self.ask(TRAIL), "")
+        self.ask("shapebench.advance(1)")
+        eye = self.ask("return shapebench.camera.eye()")
+        self.stroke_on((0.5, 0.3))
+        self.assertEqual(self.ask("return shapebench.camera.eye()"), eye, "the rest of the drag turns the camera")
+        self.let_go()
+        self.choose("cut")
+        view.send_keys("g", Keys.ARROW_LEFT)
+        self.open("liver")
+        self.assertEqual(self.ask(TRAIL), "")
+
+    def stroke_on(self, place):
+        box = self.driver.find_element("id", "view-0").rect
+        chain = ActionChains(self.driver, duration=50)
+        chain.w3c_actions.pointer_action.move_to_location(round(box["x"] + place[0] * box["width"]),
+                                                          round(box["y"] + place[1] * box["height"]))
+        chain.perform()
+        self.ask(SETTLE)
 
 
 COUNT = "return shapebench.engine.surface(1).indices.length"
+
+TRAIL = "return document.querySelector('#view-0 polyline').getAttribute('points')"
 
 # The box that a side's vertices are seen in, or one of them: left, top, right, bottom, as shares of its view.
 SEEN = """

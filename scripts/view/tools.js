@@ -1,12 +1,14 @@
 // tools.js - what pointers do on a body beside pulling it: cut it with a stroke, touch it, blow at it.
-// A use of a tool is { move(place), end() }; places are camera.js's, of a view.
+// A use of a tool is { move(place), end(), drop() }: the last where what it was used on is there no more.
+// Places are camera.js's, of a view.
 import { add, dot } from 'view/camera';
 import { pickHit } from 'view/pick';
 
 const GALE = 8; // of the wind: how often its acceleration crosses half a view in a second squared
 const FINGER = 3; // radius, finest cells
+const START = 0.02; // half heights that a stroke must go before it cuts
 
-export const TOOLS = ['pull', 'cut', 'touch', 'wind'];
+const MINCED = 'It has been cut into so much that another cut would take seconds: Reset makes it whole.';
 const REFUSALS = {
     cut: 'Only a body that is alone can be cut: open a scene of one body, such as the liver.',
     touch: 'There is no octree here that could be refined where it is touched.',
@@ -17,22 +19,36 @@ export class Tools {
         this.app = app;
         this.name = 'pull';
         this.work = null; // what waits for the next frame
+        this.refused = null; // the scene's text whose bodies cannot be cut
     }
 
     // Takes a tool up; bodies that are not made to be cut are made anew, and go on where they are.
     async choose(name) {
+        if (name !== this.name) this.app.hands.endAll();
         this.name = name;
-        const { engine } = this.app;
-        const may = () => engine.present().some((side) => engine.mayCut(side));
-        if (name !== 'cut' || !this.app.text || may()) return;
-        engine.allowCut();
-        const refused = await this.app.open(this.app.text, true);
-        this.app.say(refused || (may() ? '' : REFUSALS.cut));
+        if (name === 'cut' && this.app.text) await this.allowCut();
+    }
+
+    async allowCut() {
+        const { app } = this;
+        const may = () => app.engine.present().some((side) => app.engine.mayCut(side));
+        if (may()) return;
+        if (app.text !== this.refused) {
+            app.engine.allowCut();
+            const why = await app.open(() => app.text, true);
+            this.refused = may() ? null : app.text;
+            if (!why && may()) return;
+        }
+        app.say(REFUSALS.cut);
     }
 
     // Begins to use the tool at a place of a side's view; null where there is nothing to do.
     begin(side, place) {
         const { engine, camera } = this.app;
+        if (this.name === 'cut' && this.refused === this.app.text) {
+            this.app.say(REFUSALS.cut);
+            return null;
+        }
         const hits = () => pickHit(engine.surface(side), camera.ray(place.x, place.y, place.aspect)) >= 0;
         const use = { cut: Blade, touch: Finger, wind: Wind }[this.name];
         return use && (use !== Finger || hits()) ? new use(this.app, side, place) : null;
@@ -44,10 +60,10 @@ export class Tools {
         this.app.changed();
     }
 
-    frame() {
+    async frame() {
         const { work } = this;
         this.work = null;
-        work?.();
+        await work?.();
     }
 }
 
@@ -55,7 +71,8 @@ export class Tools {
 class Blade {
     constructor(app, side, place) {
         Object.assign(this, { app, trail: [], waiting: [] });
-        app.tools.choose('cut').then(() => this.move(place)); // after a reset it must be made so again
+        this.ready = app.tools.allowCut(); // after a reset they must be made so again
+        this.move(place);
     }
 
     // From before the nearest to behind the farthest of what both sides draw.
@@ -78,25 +95,39 @@ class Blade {
         return [along(near - cell), along(far + cell)];
     }
 
+    // A finger that has hardly moved may yet be one of two, which turn the view.
     move(place) {
-        this.trail.push(place);
-        this.app.hands.showTrail(this.trail);
         if (this.ended) return;
+        this.trail.push(place);
         this.waiting.push(place);
-        this.app.tools.later(() => this.cut());
+        this.app.hands.showTrail(this.trail);
+        const far = ({ x, y }) => Math.hypot((x - this.trail[0].x) * place.aspect, y - this.trail[0].y);
+        if (this.begun ||= far(place) > START) this.app.tools.later(() => this.cut());
     }
 
     // Along the trail as it was since the last frame: its corners, of a hand that is fast.
-    cut() {
-        for (const place of this.waiting) this.app.engine.cut(...this.segment(place));
-        this.waiting = [];
+    async cut() {
+        await this.ready;
+        const { engine } = this.app;
+        const may = this.waiting.splice(0).every((place) => engine.cut(...this.segment(place)));
+        if (!may) this.app.say(engine.present().some((side) => engine.mayCut(side)) ? MINCED : REFUSALS.cut);
         this.app.showSurfaces();
     }
 
     end() {
-        this.app.tools.frame();
+        if (this.ended) return;
         this.ended = true;
-        this.app.engine.lift();
+        this.app.hands.showTrail([]);
+        this.app.guard(async () => {
+            if (this.begun) await this.cut();
+            this.app.engine.lift();
+        });
+    }
+
+    // The scene is another one.
+    drop() {
+        this.ended = true;
+        this.waiting = [];
         this.app.hands.showTrail([]);
     }
 }
@@ -121,7 +152,7 @@ class Finger {
         if (!engine.mayTouch(1, body)) {
             if (this.refused) return undefined;
             engine.allowTouch(body);
-            const why = await app.open(app.text, true);
+            const why = await app.open(() => app.text, true);
             this.refused = !engine.mayTouch(1, body);
             app.say(why || (this.refused ? REFUSALS.touch : ''));
         }
@@ -133,6 +164,8 @@ class Finger {
         this.ended = true;
         this.app.engine.leave();
     }
+
+    drop() { this.ended = true; }
 }
 
 // Blows the way that the pointer has gone, the harder the farther.
@@ -152,4 +185,6 @@ class Wind {
         this.app.engine.blow([0, 0, 0]);
         this.app.hands.showTrail([]);
     }
+
+    drop() { this.end(); }
 }
