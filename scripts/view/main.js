@@ -30,7 +30,6 @@ function wire(app) {
     const dark = matchMedia('(prefers-color-scheme: dark)');
     dark.addEventListener('change', () => app.setTheme(dark.matches));
     app.setTheme(dark.matches);
-    app.tools.choose(document.querySelector('#tools input:checked').value); // browsers keep it when reloading
     new ResizeObserver(() => app.resized()).observe($('canvas'));
     window.addEventListener('hashchange', () => app.openLink());
 }
