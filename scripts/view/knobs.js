@@ -67,7 +67,7 @@ export const SLIDERS = [
             const without = removeSetting(removeSetting(text, 'cells'), 'cell');
             return setSetting(without, 'particles', value);
         } },
-    { key: 'gravity', label: 'Gravity in y', least: -19.62, most: 9.81, by: 0.981, start: 0,
+    { key: 'gravity', label: 'Gravity in y', least: -19.62, most: 9.81, by: 0.981, start: 0, open: true,
         choices: [0, -9.81],
         get: (text) => getNumbers(text, 'gravity')?.[1],
         set: (text, value) => {

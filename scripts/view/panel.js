@@ -73,6 +73,11 @@ class Slider extends Knob {
         const { get = (all) => getNumber(all, this.what.key), start, log, hint, otherwise } = this.what;
         const given = get(text);
         const value = given ?? start ?? (hint ? otherwise : this.panel.particles());
+        if (this.what.open) { // bodies of other units want other values
+            const { least, most, by } = this.what;
+            const times = Math.max(1, 2 * value / (value < 0 ? least : most));
+            Object.assign(this.input, { min: times * least, max: times * most, step: times * by });
+        }
         this.input.value = log ? Math.log10(value) : value;
         this.output.textContent = given === undefined && hint ? hint : short(value);
         this.input.setAttribute('aria-valuetext', this.output.textContent);

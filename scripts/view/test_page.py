@@ -152,6 +152,18 @@ class Page(PageCase):
         for setting in ('weighting = "plain"', "widths = ( {", "near = ", 'polar = "jacobi"', 'summation = "naive"'):
             self.assertIn(setting, before)
 
+    def test_gravity_of_other_units(self):
+        """A body of hundreds of units falls by hundreds of them, and the knob goes as far."""
+        self.assertFalse(self.ask("return shapebench.open(values[0], false)", BLOCK + "gravity = [0.0, -463.0, 0.0];"))
+        knob = self.driver.find_element("id", "knob-gravity")
+        self.assertAlmostEqual(float(knob.get_attribute("value")), -463, delta=15)
+        before = self.ask("return shapebench.text()")
+        knob.send_keys(Keys.ARROW_RIGHT)
+        after = float(re.search(r"gravity = \[0.0, (.*), 0.0\]", self.ask(CHANGED, before)).group(1))
+        self.assertTrue(-463 < after < -400, after)
+        self.open("penguin")
+        self.assertEqual(float(knob.get_attribute("min")), -19.62)
+
     def test_one_side_alone(self):
         """It fills the view, and the other takes no time; both begin anew together."""
         self.open("penguin")
