@@ -92,46 +92,40 @@ bool view_side_is_whole(const ViewSide *side)
     return true;
 }
 
-/* The group that a body of the scene is in, and its number there. */
-static BenchGroup *find_body(const ViewSide *side, long instance, long *number)
-{
-    for (int g = 0; g < side->play.count; g++) {
-        BenchGroup *group = &side->play.group[g];
-        for (*number = 0; *number < group->body.instances; ++*number)
-            if (group->instance[*number] == instance) return group;
-    }
-    return NULL;
-}
-
 bool view_side_is_like(const ViewSide *side, const ViewSide *other)
 {
     if (view_side_is_there(side) != view_side_is_there(other)) return false;
     if (side->scene.instances != other->scene.instances) return false;
-    for (long i = 0; view_side_is_there(side) && i < side->scene.instances; i++) {
-        long number;
-        if (find_body(side, i, &number)->runner.count != find_body(other, i, &number)->runner.count)
-            return false;
-    }
+    const ViewSide *both[] = {side, other};
+    for (int s = 0; s < 2; s++) /* bodies at rest are all alike */
+        for (int g = 0; g < both[s]->play.count; g++)
+            if (both[s]->play.group[g].runner.count != side->play.group[0].runner.count)
+                return false;
     return true;
 }
 
-/* A field of both sides' particles, from body to body: these may be grouped otherwise. */
+/* A field of all particles, body after body as the scene numbers them, from the engines or to them:
+ * the same bodies may be grouped otherwise. */
+static void exchange(const BenchGroup *group, SmField field, bool set, double (*all)[3])
+{
+    const BenchRunner *runner = &group->runner;
+    double(*value)[3] = sm_alloc((size_t)runner->particles, sizeof *value);
+    if (!set) runner->type->get(runner->engine, field, value);
+    for (long k = 0; k < group->body.instances; k++) {
+        double(*own)[3] = value + k * runner->count;
+        double(*body)[3] = all + group->instance[k] * runner->count;
+        memcpy(set ? own : body, set ? body : own, (size_t)runner->count * sizeof *own);
+    }
+    if (set) runner->type->set(runner->engine, field, (const double(*)[3])value);
+    free(value);
+}
+
 static void copy_field(ViewSide *side, const ViewSide *from, SmField field)
 {
-    for (int g = 0; g < side->play.count; g++) {
-        const BenchGroup *to = &side->play.group[g];
-        size_t count = (size_t)to->runner.count, number;
-        double(*value)[3] = sm_alloc((size_t)to->runner.particles, sizeof *value);
-        for (long i = 0; i < to->body.instances; i++) {
-            const BenchRunner *was = &find_body(from, to->instance[i], (long *)&number)->runner;
-            double(*all)[3] = sm_alloc((size_t)was->particles, sizeof *all);
-            was->type->get(was->engine, field, all);
-            memcpy(value + (size_t)i * count, all + number * count, count * sizeof *value);
-            free(all);
-        }
-        to->runner.type->set(to->runner.engine, field, (const double(*)[3])value);
-        free(value);
-    }
+    double(*all)[3] = sm_alloc((size_t)bench_playback_particles(&from->play), sizeof *all);
+    for (int g = 0; g < from->play.count; g++) exchange(&from->play.group[g], field, false, all);
+    for (int g = 0; g < side->play.count; g++) exchange(&side->play.group[g], field, true, all);
+    free(all);
 }
 
 void view_side_go_on(ViewSide *side, const ViewSide *from)

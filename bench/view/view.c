@@ -178,16 +178,10 @@ int view_open(int bytes, int keep)
     return 0;
 }
 
-/* The side of this number if it is there. */
-static ViewSide *side_of(int number)
+ViewSide *view_side_of(int number)
 {
     ViewSide *side = number >= 0 && number < VIEW_SIDES ? view.side[number] : NULL;
     return side && view_side_is_there(side) ? side : NULL;
-}
-
-ViewSide *view_side_of(int number)
-{
-    return side_of(number);
 }
 
 const char *view_absent(int side)
@@ -198,7 +192,7 @@ const char *view_absent(int side)
 
 void view_step(int side, int steps)
 {
-    if (side_of(side)) view_side_step(side_of(side), steps, view.hand);
+    if (view_side_of(side)) view_side_step(view_side_of(side), steps, view.hand);
 }
 
 /* What the engines count, of all groups. */
@@ -221,7 +215,7 @@ static double counted(const ViewSide *side, int figure)
 
 double view_figure(int number, int figure)
 {
-    const ViewSide *side = side_of(number);
+    const ViewSide *side = view_side_of(number);
     double energy, momentum;
     if (!side || figure < 0 || figure >= VIEW_FIGURES) return NAN;
     switch (figure) {
@@ -250,7 +244,7 @@ double view_figure(int number, int figure)
 
 double view_stage_ms(int number, int stage)
 {
-    const ViewSide *side = side_of(number);
+    const ViewSide *side = view_side_of(number);
     if (!side || stage < 0 || stage >= SM_STAGES || !side->timed) return NAN;
     return 1e3 * side->lap[stage] / (double)side->timed;
 }
@@ -258,7 +252,7 @@ double view_stage_ms(int number, int stage)
 double view_paper_percent(int number, int stage)
 {
     static const char *const paper[VIEW_SIDES] = {"fastlsm", "octree"};
-    const ViewSide *side = side_of(number);
+    const ViewSide *side = view_side_of(number);
     if (!side || stage < 0 || stage >= SM_STAGES) return NAN;
     const RefPaperRow *row = ref_paper_find(paper[number], side->scene.row);
     return row ? row->stage_percent[stage].value : NAN;
@@ -266,12 +260,12 @@ double view_paper_percent(int number, int stage)
 
 int view_stage_steps(int side)
 {
-    return side_of(side) ? (int)side_of(side)->timed : 0;
+    return view_side_of(side) ? (int)view_side_of(side)->timed : 0;
 }
 
 void view_clear_stages(int number)
 {
-    ViewSide *side = side_of(number);
+    ViewSide *side = view_side_of(number);
     if (!side) return;
     side->timed = 0;
     memset(side->lap, 0, sizeof side->lap);
@@ -279,34 +273,34 @@ void view_clear_stages(int number)
 
 int view_surface(int side)
 {
-    if (!side_of(side)) return 0;
-    view_side_draw(side_of(side));
-    return side_of(side)->generation;
+    if (!view_side_of(side)) return 0;
+    view_side_draw(view_side_of(side));
+    return view_side_of(side)->generation;
 }
 
 int view_vertices(int side)
 {
-    return side_of(side) ? (int)side_of(side)->vertices : 0;
+    return view_side_of(side) ? (int)view_side_of(side)->vertices : 0;
 }
 
 int view_triangles(int side)
 {
-    return side_of(side) ? (int)side_of(side)->triangles : 0;
+    return view_side_of(side) ? (int)view_side_of(side)->triangles : 0;
 }
 
 const float *view_points(int side)
 {
-    return side_of(side) ? side_of(side)->point32 : NULL;
+    return view_side_of(side) ? view_side_of(side)->point32 : NULL;
 }
 
 const float *view_normals(int side)
 {
-    return side_of(side) ? side_of(side)->normal32 : NULL;
+    return view_side_of(side) ? view_side_of(side)->normal32 : NULL;
 }
 
 const int *view_indices(int side)
 {
-    return side_of(side) ? side_of(side)->index : NULL;
+    return view_side_of(side) ? view_side_of(side)->index : NULL;
 }
 
 const double *view_bounds(void)
@@ -318,7 +312,7 @@ const double *view_bounds(void)
 static const BenchScene *scene_of_sides(void)
 {
     for (int s = 0; s < VIEW_SIDES; s++)
-        if (side_of(s)) return &side_of(s)->scene;
+        if (view_side_of(s)) return &view_side_of(s)->scene;
     return NULL;
 }
 
@@ -344,14 +338,16 @@ const double *view_obstacle(int number)
 static void hold_all(void)
 {
     for (int s = 0; s < VIEW_SIDES; s++)
-        if (side_of(s)) view_grips_hold(&side_of(s)->grips, &side_of(s)->play, view.hand, false);
+        if (view_side_of(s))
+            view_grips_hold(&view_side_of(s)->grips, &view_side_of(s)->play, view.hand, false);
 }
 
 static bool is_held(int grip)
 {
     double middle[3];
     for (int s = 0; s < VIEW_SIDES; s++)
-        if (side_of(s) && view_grips_middle(&side_of(s)->grips, &side_of(s)->play, grip, middle))
+        if (view_side_of(s) &&
+            view_grips_middle(&view_side_of(s)->grips, &view_side_of(s)->play, grip, middle))
             return true;
     return false;
 }
@@ -360,9 +356,9 @@ int view_grab(int side, int vertex, double radius)
 {
     int grip = 0;
     while (grip < VIEW_HANDS && view.hand[grip].holds) grip++;
-    if (grip == VIEW_HANDS || !side_of(side)) return -1;
+    if (grip == VIEW_HANDS || !view_side_of(side)) return -1;
     ViewHand taken = {.holds = true, .radius = radius};
-    if (!view_side_vertex(side_of(side), vertex, &taken.instance, taken.rest)) return -1;
+    if (!view_side_vertex(view_side_of(side), vertex, &taken.instance, taken.rest)) return -1;
     view.hand[grip] = taken;
     hold_all();
     if (is_held(grip)) return grip;
@@ -386,7 +382,7 @@ void view_release(int grip)
 
 const double *view_grip(int side, int grip)
 {
-    const ViewSide *of = side_of(side);
+    const ViewSide *of = view_side_of(side);
     return of && view_grips_middle(&of->grips, &of->play, grip, view.middle) ? view.middle : NULL;
 }
 
@@ -404,13 +400,13 @@ void view_allow_touch(int instance)
 
 int view_may_cut(int side)
 {
-    return side_of(side) && side_of(side)->tools.blade >= 0;
+    return view_side_of(side) && view_side_of(side)->tools.blade >= 0;
 }
 
 int view_may_touch(int side, int instance)
 {
-    return side_of(side) &&
-           view_tools_may_touch(&side_of(side)->tools, &side_of(side)->scene, instance);
+    return view_side_of(side) &&
+           view_tools_may_touch(&view_side_of(side)->tools, &view_side_of(side)->scene, instance);
 }
 
 int view_cut(double ax, double ay, double az, double bx, double by, double bz)
@@ -420,21 +416,22 @@ int view_cut(double ax, double ay, double az, double bx, double by, double bz)
     for (int d = 0; d < 3; d++)
         if (!isfinite(a[d]) || !isfinite(b[d])) return 0;
     for (int s = 0; s < VIEW_SIDES; s++)
-        if (side_of(s)) cut += view_side_cut(side_of(s), a, b, view.hand);
+        if (view_side_of(s)) cut += view_side_cut(view_side_of(s), a, b, view.hand);
     return cut;
 }
 
 void view_lift(void)
 {
     for (int s = 0; s < VIEW_SIDES; s++)
-        if (side_of(s)) view_tools_lift(&side_of(s)->tools, &side_of(s)->play);
+        if (view_side_of(s)) view_tools_lift(&view_side_of(s)->tools, &view_side_of(s)->play);
 }
 
 int view_body(int side, int vertex)
 {
     long instance;
     double rest[3];
-    bool found = side_of(side) && view_side_vertex(side_of(side), vertex, &instance, rest);
+    bool found =
+        view_side_of(side) && view_side_vertex(view_side_of(side), vertex, &instance, rest);
     return found ? (int)instance : -1;
 }
 
@@ -442,16 +439,18 @@ void view_touch(int side, int vertex, double radius)
 {
     long instance;
     double rest[3];
-    if (!side_of(side) || !view_side_vertex(side_of(side), vertex, &instance, rest)) return;
+    if (!view_side_of(side) || !view_side_vertex(view_side_of(side), vertex, &instance, rest))
+        return;
     for (int s = 0; s < VIEW_SIDES; s++)
-        if (side_of(s))
-            view_tools_touch(&side_of(s)->tools, &side_of(s)->scene, instance, rest, radius);
+        if (view_side_of(s))
+            view_tools_touch(&view_side_of(s)->tools, &view_side_of(s)->scene, instance, rest,
+                             radius);
 }
 
 void view_leave(void)
 {
     for (int s = 0; s < VIEW_SIDES; s++)
-        if (side_of(s)) view_tools_leave(&side_of(s)->tools, &side_of(s)->scene);
+        if (view_side_of(s)) view_tools_leave(&view_side_of(s)->tools, &view_side_of(s)->scene);
 }
 
 void view_blow(double x, double y, double z)
@@ -459,5 +458,5 @@ void view_blow(double x, double y, double z)
     if (!isfinite(x) || !isfinite(y) || !isfinite(z)) return;
     memcpy(view.wind, (double[3]){x, y, z}, sizeof view.wind);
     for (int s = 0; s < VIEW_SIDES; s++)
-        if (side_of(s)) memcpy(side_of(s)->tools.wind, view.wind, sizeof view.wind);
+        if (view_side_of(s)) memcpy(view_side_of(s)->tools.wind, view.wind, sizeof view.wind);
 }

@@ -1,29 +1,14 @@
 // carry.js - FastLSM's surface by a vertex shader (carry.vert; fastlsm section 4): particles go up as a
 // texture, vertices and normals stay on the graphics card.
-const NAMES = ['carriers0', 'carriers1', 'phi0', 'phi1', 'u0', 'u1', 'v0', 'v1'];
+import { link } from 'view/program';
 
-function compile(gl, text, discard) {
-    const program = gl.createProgram();
-    for (const [kind, source] of [[gl.VERTEX_SHADER, text], [gl.FRAGMENT_SHADER, discard]]) {
-        const shader = gl.createShader(kind);
-        gl.shaderSource(shader, source);
-        gl.compileShader(shader);
-        gl.attachShader(program, shader);
-    }
-    NAMES.forEach((name, at) => gl.bindAttribLocation(program, at, name));
-    gl.transformFeedbackVaryings(program, ['place', 'facing'], gl.SEPARATE_ATTRIBS);
-    gl.linkProgram(program);
-    if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
-    return program;
-}
-
+const ATTRIBUTES = ['carriers0', 'carriers1', 'phi0', 'phi1', 'u0', 'u1', 'v0', 'v1'];
 const NOTHING = '#version 300 es\nvoid main() {}\n';
 
 export class Carry {
     constructor(gl, shader) {
         this.gl = gl;
-        this.program = compile(gl, shader, NOTHING);
-        this.particles = gl.getUniformLocation(this.program, 'particles');
+        this.shader = link(gl, shader, NOTHING, ATTRIBUTES, ['place', 'facing']);
         this.array = gl.createVertexArray();
         [this.carriers, ...this.weights] = [0, 1, 2, 3].map(() => gl.createBuffer());
         this.feedback = gl.createTransformFeedback();
@@ -62,8 +47,8 @@ export class Carry {
             gl.bufferData(gl.ARRAY_BUFFER, 12 * carried.vertices * carried.bodies, gl.DYNAMIC_COPY);
         }
         gl.bindBuffer(gl.ARRAY_BUFFER, null);
-        gl.useProgram(this.program);
-        gl.uniform1f(this.particles, carried.particles);
+        gl.useProgram(this.shader.program);
+        gl.uniform1f(this.shader.at.particles, carried.particles);
         gl.bindVertexArray(this.array);
         gl.bindTransformFeedback(gl.TRANSFORM_FEEDBACK, this.feedback);
         [points, normals].forEach((buffer, i) => gl.bindBufferBase(gl.TRANSFORM_FEEDBACK_BUFFER, i, buffer));

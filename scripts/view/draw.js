@@ -1,10 +1,12 @@
 // draw.js - draws both views with WebGL2: bodies, obstacles, ground with shadow, and what is held.
 import { add, cross, dot, unit } from 'view/camera';
 import { Carry } from 'view/carry';
+import { link } from 'view/program';
 import { findGrounds, meshObstacles } from 'view/shapes';
 
 const MAP = 512; // pixels of a side's shadow map
-export const POINT = 0, NORMAL = 1, APART = 2; // attributes, alike in all programs of surfaces
+export const ATTRIBUTES = ['point', 'normal', 'apart']; // alike in all programs of surfaces
+export const [POINT, NORMAL, APART] = ATTRIBUTES.keys();
 export const rgb = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255);
 
 export const THEMES = {
@@ -14,32 +16,6 @@ export const THEMES = {
         sides: ['#3c97cf', '#e57a2a'] },
 };
 const HELD = rgb('#f0e442');
-
-function compile(gl, kind, text) {
-    const shader = gl.createShader(kind);
-    gl.shaderSource(shader, text);
-    gl.compileShader(shader);
-    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
-    return shader;
-}
-
-// A program, and where its uniforms are.
-export function link(gl, vertex, fragment) {
-    const program = gl.createProgram();
-    gl.attachShader(program, compile(gl, gl.VERTEX_SHADER, vertex));
-    gl.attachShader(program, compile(gl, gl.FRAGMENT_SHADER, fragment));
-    gl.bindAttribLocation(program, POINT, 'point');
-    gl.bindAttribLocation(program, NORMAL, 'normal');
-    gl.bindAttribLocation(program, APART, 'apart');
-    gl.linkProgram(program);
-    if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
-    const at = {};
-    for (let i = 0; i < gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS); i++) {
-        const { name } = gl.getActiveUniform(program, i);
-        at[name] = gl.getUniformLocation(program, name);
-    }
-    return { program, at };
-}
 
 // Buffers of one surface on the graphics card.
 export class Mesh {
@@ -112,7 +88,7 @@ export class Picture {
         this.gl = gl;
         this.canvas = canvas;
         for (const name of ['surface', 'shadow', 'ground', 'dot'])
-            this[name] = link(gl, shaders[`${name}.vert`], shaders[`${name}.frag`]);
+            this[name] = link(gl, shaders[`${name}.vert`], shaders[`${name}.frag`], ATTRIBUTES);
         this.bodies = [new Mesh(gl), new Mesh(gl)];
         this.maps = [makeMap(gl), makeMap(gl)];
         this.stones = new Mesh(gl);

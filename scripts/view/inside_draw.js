@@ -1,5 +1,6 @@
 // inside_draw.js - draws what is inside a body: particles and links, cells, a region with its sums.
-import { APART, Mesh, link, rgb } from 'view/draw';
+import { APART, ATTRIBUTES, Mesh, rgb } from 'view/draw';
+import { link } from 'view/program';
 import { BOX, CELL } from 'view/inside_engine';
 
 // Colours of levels from base cells on, and of what belongs to a region: apart from both sides' colours, and
@@ -92,7 +93,7 @@ export class InsidePicture {
         const { gl } = picture;
         Object.assign(this, { gl, picture });
         for (const name of ['wire', 'cell', 'line'])
-            this[name] = link(gl, shaders[`${name}.vert`], shaders['wire.frag']);
+            this[name] = link(gl, shaders[`${name}.vert`], shaders['wire.frag'], ATTRIBUTES);
         this.sides = [new SideBuffers(gl), new SideBuffers(gl)];
     }
 

@@ -189,7 +189,11 @@ def running(mark):
 PLAY = """
 const press = (id) => document.getElementById(id).click();
 press('pause');
-await new Promise((done) => setTimeout(done, 2000));
+const long = () => { // enough of it, however slow the machine
+    const kept = shapebench.film.frames;
+    return kept.length >= 6 && kept.at(-1).time - kept[0].time > 1200;
+};
+while (!long()) await new Promise((done) => setTimeout(done, 100));
 press('pause');
 const own = URL.createObjectURL;
 try {
