@@ -167,6 +167,11 @@ const RefPaperRow *ref_paper_find(const char *paper, const char *scene)
 
 int ref_paper_column(const RefPaperRow *row, const char *column, RefValue value[SM_STAGES])
 {
+    SmStage stage = sm_stage_of_ms(column);
+    if (stage < SM_STAGES) {
+        *value = row->stage_ms[stage];
+        return 1;
+    }
     bool ms = strcmp(column, "stage_ms") == 0;
     if (ms || strcmp(column, "stage_percent") == 0) {
         memcpy(value, ms ? row->stage_ms : row->stage_percent, sizeof row->stage_ms);

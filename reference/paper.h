@@ -50,8 +50,9 @@ const RefPaperClaim *ref_paper_claim(const char *paper, const char *name);
 /* Text of reference/claims.cfg, which bench/claims/claim.h reads. */
 extern const char ref_claims_text[];
 
-/* The values in a column of the row, named as in papers.cfg ("particles"; of a change "added"),
- * into `value`: of "stage_ms" and "stage_percent" SM_STAGES of them, else one. Returns how many, 0
+/* The values in a column of the row, named as in papers.cfg ("particles"; of a change "added"; one
+ * stage's time "polar_ms"), into `value`: of "stage_ms" and "stage_percent" SM_STAGES of them, else
+ * one. Returns how many, 0
  * for an unknown column. What the paper does not give is NaN. */
 int ref_paper_column(const RefPaperRow *row, const char *column, RefValue value[SM_STAGES]);
 

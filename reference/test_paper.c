@@ -53,6 +53,19 @@ TEST(stages_add_up)
     assert_true(isnan(ref_paper_find("fastlsm", "penguin")->stage_ms[SM_DAMPING].value));
 }
 
+TEST(a_stage_is_a_column_by_its_name)
+{
+    RefValue value[SM_STAGES];
+    const RefPaperRow *solid = ref_paper_find("fastlsm", "statue-solid");
+    assert_int_equal(ref_paper_column(solid, "polar_ms", value), 1);
+    assert_true(value->value == 31.66 && value->status == REF_QUOTED);
+    assert_int_equal(
+        ref_paper_column(ref_paper_find("fastlsm", "infant"), "shape_matching_ms", value), 1);
+    assert_int_equal(value->status, REF_DAMAGED);
+    assert_int_equal(ref_paper_column(solid, "polar", value), 0);
+    assert_int_equal(ref_paper_column(solid, "polar_ms_", value), 0);
+}
+
 TEST(costs_per_particle_follow_from_the_table)
 {
     static const char *const pairs[][2] = {{"penguin", "penguin-particle"},

@@ -15,14 +15,14 @@
 /* Fields that are no quantity of the row, or have a confidence interval. */
 static const char *const made[] = {"total_ms",    "ns_per_particle_step", "fps",
                                    "frame_rate",  "stage_percent",        "thirds_percent",
-                                   "cost_growth", "growth_percent"};
+                                   "cost_growth", "growth_percent",       "body_ms"};
 enum { MADE = sizeof made / sizeof made[0] };
 
 static bool is_made(const char *name)
 {
     for (int f = 0; f < MADE; f++)
         if (!strcmp(made[f], name)) return true;
-    return false;
+    return sm_stage_of_ms(name) < SM_STAGES;
 }
 
 bool bench_scene_field_known(const char *name)
@@ -34,11 +34,12 @@ void bench_scene_field_names(size_t size, char *names)
 {
     names[0] = '\0';
     for (int f = 0; f < MADE; f++) sm_append(names, size, "%s%s", f ? "|" : "", made[f]);
+    for (int s = 0; s < SM_STAGES; s++) sm_append(names, size, "|%s_ms", sm_stage_name((SmStage)s));
     sm_append(names, size, ", or a number of a row as results/README.md lists it");
 }
 
-/* The share of some stages, given as bits, one of `points` shares. */
-static void add_share(const BenchRow *row, unsigned stages, int points, BenchCurve *curve)
+/* The share of some stages, given as bits, one of `points` shares, in percent. */
+static BenchInterval share_of(const BenchRow *row, unsigned stages, int points)
 {
     double *share = sm_alloc((size_t)row->repeats, sizeof *share), part = 0;
     for (int r = 0; r < row->repeats; r++) {
@@ -53,9 +54,23 @@ static void add_share(const BenchRow *row, unsigned stages, int points, BenchCur
         if (stages >> s & 1) part += row->stage_ms[s];
     BenchInterval found = bench_curve_interval(share, row->repeats, 0.5, points);
     double percent = 100 * part / row->total_ms; /* a table's, whose shares add up */
-    bench_curve_add(curve, curve->points, percent, fmin(percent, found.low),
-                    fmax(percent, found.high));
     free(share);
+    return (BenchInterval){percent, fmin(percent, found.low), fmax(percent, found.high)};
+}
+
+static void add_share(const BenchRow *row, unsigned stages, int points, BenchCurve *curve)
+{
+    BenchInterval share = share_of(row, stages, points);
+    bench_curve_add(curve, curve->points, share.value, share.low, share.high);
+}
+
+/* Its share of the step that takes `step` seconds. */
+static void add_stage(const BenchRow *row, SmStage stage, const BenchInterval *step,
+                      BenchCurve *curve)
+{
+    BenchInterval share = share_of(row, 1U << stage, 1);
+    bench_curve_add(curve, 0, row->stage_ms[stage], 10 * share.low * step->low,
+                    10 * share.high * step->high);
 }
 
 static void add_made(const BenchRow *row, int steps_per_frame, const char *name, BenchCurve *curve)
@@ -66,8 +81,11 @@ static void add_made(const BenchRow *row, int steps_per_frame, const char *name,
     double steps = !strcmp(name, "frame_rate") ? steps_per_frame : 1;
     BenchInterval step = bench_curve_interval(row->total, row->repeats, 0.5, 1); /* s */
     double each = 1e9 / (double)row->particles;
-    if (!strcmp(name, "total_ms"))
-        bench_curve_add(curve, 0, 1e3 * step.value, 1e3 * step.low, 1e3 * step.high);
+    double ms = !strcmp(name, "body_ms") ? 1e3 / (double)row->instances : 1e3;
+    if (!strcmp(name, "total_ms") || !strcmp(name, "body_ms"))
+        bench_curve_add(curve, 0, ms * step.value, ms * step.low, ms * step.high);
+    else if (sm_stage_of_ms(name) < SM_STAGES)
+        add_stage(row, sm_stage_of_ms(name), &step, curve);
     else if (!strcmp(name, "ns_per_particle_step"))
         bench_curve_add(curve, 0, each * step.value, each * step.low, each * step.high);
     else if (!strcmp(name, "fps") || !strcmp(name, "frame_rate"))

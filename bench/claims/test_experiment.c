@@ -129,6 +129,34 @@ TEST(scenes_give_their_fields)
     bench_lab_free(&lab);
 }
 
+/* The stages of a step, each with its interval, add up to the step; of many bodies each has a part
+ * of it. */
+TEST(stages_and_bodies_share_the_step)
+{
+    BenchLab lab = quick_lab();
+    BenchMeasure measure = {.experiment = BENCH_TRY_SCENE};
+    strcpy(measure.scene, "penguin");
+    double sum = 0;
+    for (int s = 0; s < SM_STAGES; s++) {
+        snprintf(measure.field, sizeof measure.field, "%s_ms", sm_stage_name((SmStage)s));
+        int stage = bench_experiment(&lab, &measure);
+        const BenchCurve *curve = &lab.curve[stage];
+        if (curve->busy) {
+            bench_lab_free(&lab);
+            skip_because("other programs take the processors");
+        }
+        assert_true(curve->valid && curve->points == 1);
+        assert_true(curve->low[0] <= curve->high[0]);
+        sum += curve->y[0];
+    }
+    assert_true(fabs(sum / lab.row[0].total_ms - 1) < 1e-9);
+    strcpy(measure.field, "body_ms");
+    int body = bench_experiment(&lab, &measure);
+    assert_true(fabs(lab.curve[body].y[0] / lab.row[0].total_ms - 1) < 1e-9);
+    assert_true(lab.rows == 1 && lab.row[0].instances == 1);
+    bench_lab_free(&lab);
+}
+
 TEST(what_cannot_be_measured_is_not_valid)
 {
     BenchLab lab = quick_lab();

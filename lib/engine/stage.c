@@ -18,6 +18,16 @@ const char *sm_stage_name(SmStage stage)
     return sm_matching_stages.of[stage].name;
 }
 
+SmStage sm_stage_of_ms(const char *name)
+{
+    for (int s = 0; s < SM_STAGES; s++) {
+        const char *stage = sm_stage_name((SmStage)s);
+        size_t length = strlen(stage);
+        if (!strncmp(name, stage, length) && !strcmp(name + length, "_ms")) return (SmStage)s;
+    }
+    return SM_STAGES;
+}
+
 double sm_lap_seconds(void)
 {
     enum { READS = 256, TRIES = 64 };

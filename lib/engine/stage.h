@@ -42,6 +42,9 @@ extern const SmStages sm_matching_stages;
 /* Their names. */
 const char *sm_stage_name(SmStage stage);
 
+/* The one whose name followed by "_ms" this is; SM_STAGES where there is none. */
+SmStage sm_stage_of_ms(const char *name);
+
 /* Seconds that reading the clock takes at best: what a lap adds to its stage, at least. */
 double sm_lap_seconds(void);
 
