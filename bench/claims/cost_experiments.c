@@ -94,8 +94,8 @@ SmCode bench_costs_sums(const BenchExperiment *of, SmError *error)
     return time_kernels(of, kernels, count, 1, repeats, add_sums, error);
 }
 
-/* ms a step: of the lattice's CPU time, of the octree the sum of the parts that are timed. */
-static void add_size(BenchCurve *curve, const BenchJob *jobs, int points)
+/* ms a step at x: of the lattice's CPU time, of the octree the sum of the parts that are timed. */
+static void add_ms(BenchCurve *curve, double x, const BenchJob *jobs, int points)
 {
     int samples = jobs->trial->samples, parts = jobs->kernel->part == BENCH_TREE_DEPTH ? 3 : 1;
     double *ms = sm_alloc((size_t)samples, sizeof *ms);
@@ -104,8 +104,18 @@ static void add_size(BenchCurve *curve, const BenchJob *jobs, int points)
             ms[r] += 1e3 * (jobs->kernel->kind == &bench_cube_kernels
                                 ? jobs->trial->cpu[r]
                                 : jobs[p].kernel->kind->seconds(&jobs[p], r));
-    bench_curve_sample(curve, (double)jobs->items, ms, samples, BENCH_LOW, points);
+    bench_curve_sample(curve, x, ms, samples, BENCH_LOW, points);
     free(ms);
+}
+
+static void add_size(BenchCurve *curve, const BenchJob *jobs, int points)
+{
+    add_ms(curve, (double)jobs->items, jobs, points);
+}
+
+static void add_resolution(BenchCurve *curve, const BenchJob *jobs, int points)
+{
+    add_ms(curve, jobs->kernel->side, jobs, points);
 }
 
 SmCode bench_costs_size(const BenchExperiment *of, SmError *error)
@@ -114,19 +124,24 @@ SmCode bench_costs_size(const BenchExperiment *of, SmError *error)
     int side[BENCH_RANGE_POINTS], count = bench_range_numbers(&of->measure->n, side);
     bool octree = bench_engine(of->measure->engine)->sampled;
     bool sums = !strcmp(of->measure->field, "sums");
+    bool by_side = !strcmp(of->measure->field, "resolution");
     int each = sums ? 3 : 1;
     const BenchKernelKind *kind = octree ? &bench_tree_step_kernels : &bench_cube_kernels;
     BenchKernel kernels[3 * BENCH_RANGE_POINTS];
     for (int c = 0; c < count && of->lab->quick; c++) side[c] = side[c] > 40 ? 40 : side[c];
     while (count > 1 && side[count - 1] == side[count - 2]) count--;
-    bench_curve_begin(of->curve, octree ? "nodes" : "particles",
+    bench_curve_begin(of->curve,
+                      by_side  ? "particles a side"
+                      : octree ? "nodes"
+                               : "particles",
                       sums ? "sums, ms/step" : "ms/step");
     for (int k = 0; k < count * each; k++) {
         int whole = octree ? BENCH_TREE_WHOLE : BENCH_CUBE_STEP;
         kernels[k] = kernel_of(kind, k / each, side[k / each], 1, sums ? parts[k % 3] : whole);
         kernels[k].damping = 0.1;
     }
-    return time_kernels(of, kernels, count * each, each, repeats_of(of->lab), add_size, error);
+    return time_kernels(of, kernels, count * each, each, repeats_of(of->lab),
+                        by_side ? add_resolution : add_size, error);
 }
 
 static void add_sweeps(BenchCurve *curve, const BenchJob *job, int points)

@@ -25,8 +25,9 @@
  * - sums: ns a particle (the stage's share of a step's least CPU time) of fast summation with
  *   `summation` and `layout` (default: the engine's choice; naive sums are lists) in a solid cube,
  *   against the mean side of its regions (2w + 1 but for those at the surface); range `w`.
- * - size: ms a step of solid cubes of n x n x n particles against their number; range `n`. `engine`
- *   fastlsm, w = 1; or octree, whose `field` may be "sums": its hierarchical sums alone.
+ * - size: ms a step of solid cubes of n x n x n particles against their number, or, `field`
+ *   "resolution", against n; range `n`. `engine` fastlsm, w = 1; or octree, whose `field` may be
+ *   "sums": its hierarchical sums alone.
  * - polar: one point, `field`: "cold-sweeps", "warm-sweeps" of the paper's Jacobi, "cold-ns",
  *   "warm-ns", "fast-ns" (what the engines use) of matrices that turn and stretch.
  * - sweeps: one point: Jacobi sweeps a decomposition of `scene` on fastlsm, each started from the
