@@ -483,7 +483,7 @@ BenchDrift bench_drift(const BenchRunner *runner)
     size_t bodies = (size_t)(runner->particles / runner->count);
     Momenta *before = sm_alloc(bodies, sizeof *before), *after = sm_alloc(bodies, sizeof *after);
     double *mass = sm_alloc((size_t)runner->count, sizeof *mass);
-    BenchDrift drift = {.steps = 10000000 / runner->particles};
+    BenchDrift drift = {.steps = 30000000 / runner->particles};
     Copy copy;
     drift.steps = drift.steps < 128 ? 128 : drift.steps > 1024 ? 1024 : drift.steps;
     memset(params.gravity, 0, sizeof params.gravity);

@@ -16,13 +16,16 @@ static void choose(const BenchMeasure *measure, OctOptions *options)
     if (options->symmetry == OCT_ASYMMETRIC) options->form = OCT_ADJOINT;
 }
 
-/* The scene by its choices. */
-static SmCode prepare(const BenchExperiment *of, SmError *error)
+/* The scene by its choices; `lattices`: a lattice will do where none is made. */
+static SmCode prepare(const BenchExperiment *of, bool lattices, SmError *error)
 {
     BenchScene *scene = of->scene;
-    if (!bench_engine(scene->engine)->sampled || scene->instances != 1)
+    const BenchMeasure *measure = of->measure;
+    bool chosen = measure->masses || measure->symmetry || measure->weighting;
+    bool sampled = bench_engine(scene->engine)->sampled;
+    if (scene->instances != 1 || !(sampled || (lattices && !chosen)))
         return sm_fail(error, SM_INPUT, "%.100s: one body in the octree is wanted", scene->file);
-    choose(of->measure, &scene->octree);
+    choose(measure, &scene->octree);
     return SM_OK;
 }
 
@@ -62,7 +65,7 @@ SmCode bench_choices_regions(const BenchExperiment *of, SmError *error)
 {
     int quarters[BENCH_RANGE_POINTS], count = bench_range_numbers(&of->measure->n, quarters);
     OctOptions *options = &of->scene->octree;
-    SmCode code = prepare(of, error);
+    SmCode code = prepare(of, false, error);
     for (int c = 0; c < count && !code; c++) {
         OctStructure s;
         options->epsilon = 0.25 * quarters[c];
@@ -117,7 +120,7 @@ static double growth_of(BenchRunner *runner, long steps)
 SmCode bench_choices_growth(const BenchExperiment *of, SmError *error)
 {
     BenchRunner runner;
-    SmCode code = prepare(of, error);
+    SmCode code = prepare(of, true, error);
     if (code) return code;
     set_free(of->scene);
     code = bench_runner_exact(of->scene, of->body, &runner, error);

@@ -1,4 +1,5 @@
 #include <assert.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,18 +8,17 @@
 #include "../../octree/change/structure.h"
 #include "../../octree/region/one_sided_regions.h"
 #include "../../octree/search/multi_source_search.h"
+#include "../check/check.h"
 #include "../engines.h"
 #include "../kernels/cubes.h"
 #include "../kernels/kernel.h"
 #include "../kernels/matrices.h"
 #include "../kernels/tree_steps.h"
+#include "../measure/measure.h"
 #include "../play/playback.h"
 #include "experiments.h"
 
-static int repeats_of(const BenchLab *lab)
-{
-    return lab->quick ? 9 : 31;
-}
+#define CONST(array) ((const double(*)[3])(array))
 
 /* ---- kernels */
 
@@ -85,7 +85,7 @@ SmCode bench_costs_sums(const BenchExperiment *of, SmError *error)
 {
     int w[BENCH_RANGE_POINTS], count = bench_range_numbers(&of->measure->w, w);
     SmSummation summation = of->measure->summation;
-    int repeats = repeats_of(of->lab) / (summation == SM_SUM_NAIVE ? 6 : 1);
+    int repeats = bench_lab_repeats(of->lab) / (summation == SM_SUM_NAIVE ? 6 : 1);
     BenchKernel kernels[BENCH_RANGE_POINTS];
     for (int c = 0; c < count; c++) {
         kernels[c] = kernel_of(&bench_cube_kernels, c, of->lab->quick ? 20 : 32, w[c], SM_FAST_SUM);
@@ -93,6 +93,135 @@ SmCode bench_costs_sums(const BenchExperiment *of, SmError *error)
     }
     return time_kernels(of, kernels, count, 1, repeats, add_sums, error);
 }
+
+/* ---- sums of a body */
+
+/* What is timed: every segment starts from the same state. */
+typedef struct {
+    BenchRunner runner;
+    double (*x)[3], (*v)[3];
+} TimedBody;
+
+static void restore(void *subject)
+{
+    TimedBody *body = subject;
+    const SmEngineType *type = body->runner.type;
+    type->set(body->runner.engine, SM_POSITION, CONST(body->x));
+    type->set(body->runner.engine, SM_VELOCITY, CONST(body->v));
+}
+
+static void step(void *subject, SmLaps *laps)
+{
+    TimedBody *body = subject;
+    body->runner.type->step(body->runner.engine, laps);
+}
+
+static SmCode open_body(const BenchExperiment *of, TimedBody *body, SmError *error)
+{
+    SmCode code =
+        bench_runner_create(of->scene, of->body, &fastlsm_engine_f32, 1, &body->runner, error);
+    if (code) return code;
+    bench_runner_disturb(&body->runner, of->lab->seed);
+    body->x = sm_alloc((size_t)body->runner.particles, sizeof *body->x);
+    body->v = sm_alloc((size_t)body->runner.particles, sizeof *body->v);
+    body->runner.type->get(body->runner.engine, SM_POSITION, body->x);
+    body->runner.type->get(body->runner.engine, SM_VELOCITY, body->v);
+    return SM_OK;
+}
+
+static void close_body(TimedBody *body)
+{
+    bench_runner_free(&body->runner);
+    free(body->x);
+    free(body->v);
+}
+
+/* Goals from x, [particles]; the caller frees. */
+static double (*goals_at(const BenchRunner *runner, double (*x)[3]))[3]
+{
+    double(*goal)[3] = sm_alloc((size_t)runner->particles, sizeof *goal);
+    runner->type->set(runner->engine, SM_POSITION, CONST(x));
+    runner->type->goals(runner->engine);
+    runner->type->get(runner->engine, SM_GOAL, goal);
+    return goal;
+}
+
+/* Holds the goals where samples start to those of naive sums in double precision. */
+static SmCode check_goals(const BenchExperiment *of, TimedBody *body, SmError *error)
+{
+    BenchScene *naive = sm_alloc(1, sizeof *naive);
+    BenchRunner twin;
+    *naive = *of->scene;
+    naive->params.summation = SM_SUM_NAIVE;
+    SmCode code = bench_runner_create(naive, of->body, &fastlsm_engine_f64, 1, &twin, error);
+    if (!code) {
+        double(*goal)[3] = goals_at(&body->runner, body->x);
+        double(*wanted)[3] = goals_at(&twin, body->x), most = 0;
+        double allowed = bench_check_tolerance("single");
+        for (long p = 0; p < twin.particles; p++)
+            for (int d = 0; d < 3; d++) most = fmax(most, fabs(goal[p][d] - wanted[p][d]));
+        most /= of->body->voxels.cell;
+        if (!(most <= allowed))
+            bench_curve_fail(of->curve, "w = %d: goals are %.3g cells from naive sums'; at most %g",
+                             naive->params.w, most, allowed);
+        free(goal);
+        free(wanted);
+    }
+    bench_runner_free(&twin);
+    free(naive);
+    return code;
+}
+
+/* The sums' part of each repeat's step. */
+static void time_sums(const BenchExperiment *of, TimedBody *body, int points)
+{
+    bool naive = of->scene->params.summation == SM_SUM_NAIVE;
+    const BenchMeasureParams params = {.repeats = of->lab->quick || naive ? 5 : 15, .threads = 1};
+    BenchRow row = {.particles = body->runner.particles, .valid = true};
+    const char *summation = bench_summations[of->scene->params.summation];
+    bench_time_steps(&(BenchTimed){body, restore, step}, &params, &row);
+    double *ns = sm_alloc((size_t)row.repeats, sizeof *ns);
+    for (int r = 0; r < row.repeats; r++) {
+        double all = 0;
+        for (int s = 0; s < SM_STAGES; s++) all += row.stage[r][s];
+        ns[r] = 1e9 * row.total[r] * row.stage[r][SM_FAST_SUM] / all / (double)row.particles;
+    }
+    int w = of->scene->params.w;
+    double side = bench_structure_side(&of->body->voxels, w);
+    bench_curve_sample(of->curve, side, ns, row.repeats, BENCH_LOW, points);
+    if (row.busy) {
+        of->curve->busy = of->curve->valid;
+        bench_curve_fail(of->curve, "w = %d, %s: others took %.0f%% of its processor", w, summation,
+                         row.lost_percent);
+    }
+    free(ns);
+    bench_row_free(&row);
+}
+
+SmCode bench_costs_body_sums(const BenchExperiment *of, SmError *error)
+{
+    enum { BRUTE_MEMBERS = 20000000 };
+    int w[BENCH_RANGE_POINTS], count = bench_range_numbers(&of->measure->w, w);
+    SmEngineParams *params = &of->scene->params;
+    SmCode code = SM_OK;
+    if (bench_engine(of->scene->engine)->sampled || of->scene->instances != 1)
+        return sm_fail(error, SM_INPUT, "%.100s: one body on a lattice is wanted", of->scene->file);
+    params->summation = of->measure->summation;
+    params->damping = 0;
+    for (int c = 0; c < count && !code && of->curve->valid; c++) {
+        TimedBody body = {0};
+        params->w = w[c];
+        code = open_body(of, &body, error);
+        if (!code) code = check_goals(of, &body, error);
+        if (!code && bench_check_members(of->body, w[c]) <= BRUTE_MEMBERS)
+            bench_curve_check(of->curve, &body.runner);
+        if (!code) time_sums(of, &body, count);
+        close_body(&body);
+    }
+    return code;
+}
+
+/* ---- size */
 
 /* ms a step at x: of the lattice's CPU time, of the octree the sum of the parts that are timed. */
 static void add_ms(BenchCurve *curve, double x, const BenchJob *jobs, int points)
@@ -140,7 +269,7 @@ SmCode bench_costs_size(const BenchExperiment *of, SmError *error)
         kernels[k] = kernel_of(kind, k / each, side[k / each], 1, sums ? parts[k % 3] : whole);
         kernels[k].damping = 0.1;
     }
-    return time_kernels(of, kernels, count * each, each, repeats_of(of->lab),
+    return time_kernels(of, kernels, count * each, each, bench_lab_repeats(of->lab),
                         by_side ? add_resolution : add_size, error);
 }
 
@@ -165,7 +294,7 @@ SmCode bench_costs_polar(const BenchExperiment *of, SmError *error)
                         : !strncmp(field, "warm", 4) ? BENCH_POLAR_WARM
                                                      : BENCH_POLAR_BATCH;
     const BenchKernel kernel = kernel_of(&bench_polar_kernels, 0, 0, 0, (int)method);
-    return time_kernels(of, &kernel, 1, 1, repeats_of(of->lab),
+    return time_kernels(of, &kernel, 1, 1, bench_lab_repeats(of->lab),
                         strstr(field, "sweeps") ? add_sweeps : add_ns, error);
 }
 
@@ -290,7 +419,7 @@ static int parent_of_leaves(const OctTree *tree, int turn, int turns)
 
 SmCode bench_costs_resampling(const BenchExperiment *of, SmError *error)
 {
-    int repeats = repeats_of(of->lab), node = 0;
+    int repeats = bench_lab_repeats(of->lab), node = 0;
     double *percent = sm_alloc((size_t)repeats, sizeof *percent);
     Resampled *body = sm_alloc(1, sizeof *body);
     SmCode code = make_resampled(of, body, error);

@@ -8,8 +8,8 @@
 #include "../check/runner_check.h"
 #include "../measure/measure.h"
 
-const char *const bench_without_names[] = {"nothing", "nodes",   "bases", "summation_nodes",
-                                           "reach",   "collide", NULL};
+const char *const bench_without_names[] = {
+    "nothing", "nodes", "bases", "summation_nodes", "reach", "collide", "creep", "widths", NULL};
 
 /* ---- curves */
 
@@ -97,6 +97,11 @@ void bench_lab_fail(BenchLab *lab, const char *name, const char *reason)
     lab->failure = sm_realloc(lab->failure, (size_t)lab->failures + 1, sizeof *lab->failure);
     snprintf(lab->failure[lab->failures].name, sizeof lab->failure->name, "%s", name);
     snprintf(lab->failure[lab->failures++].reason, sizeof lab->failure->reason, "%s", reason);
+}
+
+int bench_lab_repeats(const BenchLab *lab)
+{
+    return lab->quick ? 9 : 31;
 }
 
 void bench_lab_free(BenchLab *lab)

@@ -20,11 +20,13 @@
  *
  * - scene: one point: `field` of the scene's row as `tables` measures it, or NAMES of
  *   scene_field.h; `scene`, and `engine` in place of the scene's; `without` one of the scene's
- *   settings, which then has its default: the octree's wanted nodes, bases or summation_nodes,
- *   the reach within which its cuts refine, or collide, what bodies collide with.
+ *   settings, which then has its default: the octree's wanted nodes, bases, summation_nodes, creep
+ *   or widths, the reach within which its cuts refine, or collide, what bodies collide with.
  * - sums: ns a particle (the stage's share of a step's least CPU time) of fast summation with
  *   `summation` and `layout` (default: the engine's choice; naive sums are lists) in a solid cube,
  *   against the mean side of its regions (2w + 1 but for those at the surface); range `w`.
+ * - body-sums: the same of `scene`'s body, undamped, with its regions as they are; goals are held
+ * to naive sums in double precision, and where regions are narrow to brute force.
  * - size: ms a step of solid cubes of n x n x n particles against their number, or, `field`
  *   "resolution", against n; range `n`. `engine` fastlsm, w = 1; or octree, whose `field` may be
  *   "sums": its hierarchical sums alone.
@@ -45,10 +47,28 @@
  * - regions: `field` of the regions of `scene`'s octree, by `symmetry`, against epsilon, which is
  *   range `n` in quarters: "summation_nodes" a region, mean; "most_summation"; "beyond_percent" of
  *   members farther than (1 + epsilon) w; "parts" that the body falls into.
- * - growth: one point: sum m v^2 of `scene`'s free, bent octree over its last tenth of 20,000
- *   steps, by that over the first; by `masses`, `symmetry`, `weighting`.
+ * - growth: one point: sum m v^2 of `scene`'s free, bent body over its last tenth of 20,000 steps,
+ *   by that over the first; of an octree by `masses`, `symmetry`, `weighting`.
  * - placement: one point, by `masses`: bending stiffness of a beam in the octree whose cells its
- *   sides cut, the most by the least of four places. */
+ *   sides cut, the most by the least of four places.
+ * - additions: of the sums over all regions of a solid cube on the lattice, how many for a
+ * particle, as the lists that the engine would have name them, by what section 3.1 of fastlsm
+ * counts without a surface: (2w + 1)^3, 3 (2w + 1) or 6, for `summation` naive, bars, fast; range
+ * `w`.
+ * - body-additions: of `scene`'s lattice, how many for a particle, against the mean side of its
+ *   regions.
+ * - subsums: percent of the indices of `scene`'s lattice that own a single bar, or `field`
+ *   "one-plate", plate, whatever region it is of, of those that own any; range `w`.
+ * - distances: us for the distances from a leaf of `scene`'s octree to all leaves within so many
+ *   finest cells, range `n`, against how many those are.
+ * - left: what is left of `scene`'s deformation, rms cells from the best rigid motion of the rest
+ *   shape, after so many frames, range `n`, and as many with nothing that holds, pushes or stops
+ *   the body, over the last half of these; damped at every `every`-th step if given; also
+ *   `without` a setting. `field` "smoothed": after particles have gone to their goals so often.
+ * - pushed: of `scene`, at its end, by `field`: "others-percent", how far particles as high as the
+ *   box that its first force pushes but outside it have moved, by those within, when it pushes
+ *   alone; "softness", how far its first force moves what it pushes, a newton, by its second; also
+ *   `without` a setting. */
 typedef enum {
     BENCH_TRY_NOTHING,
     BENCH_TRY_SCENE,
@@ -63,6 +83,13 @@ typedef enum {
     BENCH_TRY_REGIONS,
     BENCH_TRY_GROWTH,
     BENCH_TRY_PLACEMENT,
+    BENCH_TRY_ADDITIONS,
+    BENCH_TRY_SUBSUMS,
+    BENCH_TRY_DISTANCES,
+    BENCH_TRY_LEFT,
+    BENCH_TRY_PUSHED,
+    BENCH_TRY_BODY_SUMS,
+    BENCH_TRY_BODY_ADDITIONS,
 } BenchTry;
 
 typedef enum {
@@ -71,7 +98,9 @@ typedef enum {
     BENCH_WITHOUT_BASES,
     BENCH_WITHOUT_SUMMATION_NODES,
     BENCH_WITHOUT_REACH,
-    BENCH_WITHOUT_COLLIDE
+    BENCH_WITHOUT_COLLIDE,
+    BENCH_WITHOUT_CREEP,
+    BENCH_WITHOUT_WIDTHS
 } BenchWithout;
 
 typedef enum { BENCH_BY_LATTICE, BENCH_BY_RIGID, BENCH_BY_LINEAR, BENCH_BY_QUADRATIC } BenchMatcher;
@@ -91,6 +120,7 @@ typedef struct {
     OctWeighting weighting;
     BenchMatcher matching;
     BenchWithout without;
+    int every; /* 0: as the scene says */
     BenchRange w, n;
 } BenchMeasure;
 
@@ -146,6 +176,9 @@ typedef struct {
 extern const char *const bench_without_names[];
 
 void bench_lab_free(BenchLab *lab);
+
+/* Samples of what is timed on one thread. */
+int bench_lab_repeats(const BenchLab *lab);
 
 /* Whole numbers of the range, rising; `number` is [BENCH_RANGE_POINTS]. Returns how many. */
 int bench_range_numbers(const BenchRange *range, int *number);

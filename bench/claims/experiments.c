@@ -31,6 +31,7 @@ const BenchSetting bench_measure_settings[] = {
     {"weighting", BENCH_IN(BenchMeasure, weighting), BENCH_CHOICES(bench_weightings)},
     {"matching", BENCH_IN(BenchMeasure, matching),
      BENCH_ONE_OF("lattice", "rigid", "linear", "quadratic")},
+    {"every", BENCH_IN(BenchMeasure, every), 1, 100},
     {"w", BENCH_IN(BenchMeasure, w), .table = range_settings},
     {"n", BENCH_IN(BenchMeasure, n), .table = range_settings},
     {0},
@@ -54,6 +55,9 @@ static const Kind kinds[] = {
     [BENCH_TRY_SUMS] = {"sums", "mean side of a region, particles",
                         "fast summation, ns/particle/step", "summation|layout|w",
                         .run = bench_costs_sums, .timed = true},
+    [BENCH_TRY_BODY_SUMS] = {"body-sums", "mean side of a region, particles",
+                             "sums of a body, ns/particle/step", "scene|summation|w",
+                             .run = bench_costs_body_sums, .timed = true},
     [BENCH_TRY_SIZE] = {"size", "", "", "engine|field|n", "|step|sums|resolution",
                         .run = bench_costs_size, .timed = true},
     [BENCH_TRY_POLAR] = {"polar", "-", NULL, "field", BENCH_POLAR_FIELDS, .run = bench_costs_polar},
@@ -72,6 +76,19 @@ static const Kind kinds[] = {
                           "scene|masses|symmetry|weighting", .run = bench_choices_growth},
     [BENCH_TRY_PLACEMENT] = {"placement", "none", "stiffness, most by least", "masses",
                              .run = bench_choices_placement},
+    [BENCH_TRY_ADDITIONS] = {"additions", "w", "additions by the paper's", "summation|w",
+                             .run = bench_structure_additions},
+    [BENCH_TRY_BODY_ADDITIONS] = {"body-additions", "mean side of a region, particles",
+                                  "additions a particle", "scene|summation|w",
+                                  .run = bench_structure_body_additions},
+    [BENCH_TRY_SUBSUMS] = {"subsums", "w", "percent of indices", "scene|field|w",
+                           BENCH_SUBSUM_FIELDS, .run = bench_structure_subsums},
+    [BENCH_TRY_DISTANCES] = {"distances", "leaves reached", "us/search", "scene|n",
+                             .run = bench_structure_distances, .timed = true},
+    [BENCH_TRY_LEFT] = {"left", "frames", "rms distance from the rest shape, cells",
+                        "scene|field|without|every|n", "|played|smoothed", .run = bench_rest_left},
+    [BENCH_TRY_PUSHED] = {"pushed", "-", NULL, "scene|field|without", BENCH_PUSHED_FIELDS,
+                          .run = bench_rest_pushed},
 };
 
 /* ---- settings */
@@ -195,6 +212,8 @@ static void name_curve(const BenchMeasure *measure, char name[BENCH_CURVE_NAME])
             append_choice(name, kind, s, *(const int *)member);
         else if (s->kind == BENCH_SET_TEXT && *(const char *)member)
             sm_append(name, BENCH_CURVE_NAME, ".%s", (const char *)member);
+        else if (s->kind == BENCH_SET_INT && *(const int *)member)
+            sm_append(name, BENCH_CURVE_NAME, ".%s%d", s->key, *(const int *)member);
         else if (s->kind == BENCH_SET_GROUP && range->points)
             sm_append(name, BENCH_CURVE_NAME, ".%s%d-%d.%d", s->key, range->from, range->to,
                       range->points);
@@ -237,6 +256,7 @@ static SmCode measure_body(const Kind *kind, BenchExperiment of, SmError *error)
     BenchBody body = {0};
     of.body = &body;
     SmCode code = bench_scene_find(of.measure->scene, scene, error);
+    if (!code && of.measure->without) bench_take_away(scene, of.measure->without);
     if (!code) code = bench_body_of_scene(scene, NULL, &body, error);
     if (!code) code = kind->run(&of, error);
     bench_body_free(&body);

@@ -30,8 +30,8 @@ void bench_experiment_name(const BenchMeasure *measure, char name[BENCH_CURVE_NA
 typedef SmCode BenchMeasuring(const BenchExperiment *of, SmError *error);
 
 /* What things cost (cost_experiments.c). */
-BenchMeasuring bench_costs_sums, bench_costs_size, bench_costs_polar, bench_costs_sweeps,
-    bench_costs_resampling;
+BenchMeasuring bench_costs_sums, bench_costs_body_sums, bench_costs_size, bench_costs_polar,
+    bench_costs_sweeps, bench_costs_resampling;
 #define BENCH_POLAR_FIELDS "cold-sweeps|warm-sweeps|cold-ns|warm-ns|fast-ns"
 
 /* How bodies deform (deformation_experiments.c). The first also keeps, for every w, the profile of
@@ -51,5 +51,17 @@ double bench_deform_jump(const int size[3], const double (*g)[3]);
  * paper's is made (choices.c). */
 BenchMeasuring bench_choices_regions, bench_choices_growth, bench_choices_placement;
 #define BENCH_REGION_FIELDS "summation_nodes|most_summation|beyond_percent|parts"
+/* How sums are made up, and what distances cost (structure_experiments.c). */
+BenchMeasuring bench_structure_additions, bench_structure_body_additions, bench_structure_subsums,
+    bench_structure_distances;
+
+/* The side of a cube of as many members as a lattice's regions have on average. O(particles w^3).
+ */
+double bench_structure_side(const SmVoxels *voxels, int w);
+#define BENCH_SUBSUM_FIELDS "one-bar|one-plate"
+
+/* Where bodies come to rest (rest_experiments.c). */
+BenchMeasuring bench_rest_left, bench_rest_pushed;
+#define BENCH_PUSHED_FIELDS "others-percent|softness"
 
 #endif

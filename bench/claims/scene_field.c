@@ -13,9 +13,10 @@
 #include "../table/quantity.h"
 
 /* Fields that are no quantity of the row, or have a confidence interval. */
-static const char *const made[] = {"total_ms",    "ns_per_particle_step", "fps",
-                                   "frame_rate",  "stage_percent",        "thirds_percent",
-                                   "cost_growth", "growth_percent",       "body_ms"};
+static const char *const made[] = {"total_ms",           "ns_per_particle_step", "fps",
+                                   "frame_rate",         "stage_percent",        "thirds_percent",
+                                   "cost_growth",        "growth_percent",       "body_ms",
+                                   "damping_by_matching"};
 enum { MADE = sizeof made / sizeof made[0] };
 
 static bool is_made(const char *name)
@@ -73,6 +74,17 @@ static void add_stage(const BenchRow *row, SmStage stage, const BenchInterval *s
                     10 * share.high * step->high);
 }
 
+/* The stages' shares of a repeat are of the same steps. */
+static void add_damping(const BenchRow *row, BenchCurve *curve)
+{
+    double *ratio = sm_alloc((size_t)row->repeats, sizeof *ratio);
+    for (int r = 0; r < row->repeats; r++)
+        ratio[r] = row->stage[r][SM_DAMPING] /
+                   (row->stage[r][SM_FAST_SUM] + row->stage[r][SM_SHAPE_MATCHING]);
+    bench_curve_sample(curve, 0, ratio, row->repeats, 0.5, 1);
+    free(ratio);
+}
+
 static void add_made(const BenchRow *row, int steps_per_frame, const char *name, BenchCurve *curve)
 {
     static const unsigned thirds[] = {1U << SM_FAST_SUM | 1U << SM_SHAPE_MATCHING, 1U << SM_POLAR,
@@ -93,6 +105,8 @@ static void add_made(const BenchRow *row, int steps_per_frame, const char *name,
                         1 / step.low / steps);
     else if (!strcmp(name, "stage_percent"))
         for (int s = 0; s < SM_STAGES; s++) add_share(row, 1U << s, SM_STAGES, curve);
+    else if (!strcmp(name, "damping_by_matching"))
+        add_damping(row, curve);
     else if (!strcmp(name, "thirds_percent"))
         for (int t = 0; t < 3; t++) add_share(row, thirds[t], 3, curve);
     else {
@@ -171,8 +185,7 @@ static int known_row(const BenchLab *lab, const char *name)
     return -1;
 }
 
-/* The setting has its default, and the scene says so in its name. */
-static void take_away(BenchScene *scene, BenchWithout without)
+void bench_take_away(BenchScene *scene, BenchWithout without)
 {
     sm_append(scene->name, sizeof scene->name, " without %s", bench_without_names[without]);
     switch (without) {
@@ -192,6 +205,12 @@ static void take_away(BenchScene *scene, BenchWithout without)
         break;
     case BENCH_WITHOUT_COLLIDE:
         scene->params.collide = (SmCollideParams){0};
+        break;
+    case BENCH_WITHOUT_CREEP:
+        scene->octree.creep = 0;
+        break;
+    case BENCH_WITHOUT_WIDTHS:
+        scene->octree.local_count = 0;
     }
 }
 
@@ -217,7 +236,7 @@ static SmCode find_row(BenchLab *lab, const BenchMeasure *measure, const char *n
     SmCode code = bench_scene_find(measure->scene, scene, error);
     if (!code && measure->engine[0])
         snprintf(scene->engine, sizeof scene->engine, "%s", measure->engine);
-    if (!code && measure->without) take_away(scene, measure->without);
+    if (!code && measure->without) bench_take_away(scene, measure->without);
     if (!code) code = measure_row(lab, scene, &row, error);
     if (code)
         bench_row_free(&row);

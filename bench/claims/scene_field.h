@@ -3,9 +3,11 @@
  * A field is any number of a row: by the name that a results file has for it (of a scene that
  * changes without "change."), that of its CSV column, or that of papers.cfg ("added", "most_ms").
  * Further ones: total_ms, fps (steps a second), frame_rate (frames a second, the scene's
- * steps_per_frame steps each) and ns_per_particle_step, with confidence intervals; stage_percent (a
- * point for every stage), thirds_percent (summation with matching, polar, damping); of scenes that
- * change growth_percent (of particles) and cost_growth (last_ms / first_ms). */
+ * steps_per_frame steps each), ns_per_particle_step, body_ms (a step by the number of bodies) and
+ * fast_sum_ms, polar_ms and so on (a stage), with confidence intervals; stage_percent (a point for
+ * every stage), thirds_percent (summation with matching, polar, damping), damping_by_matching
+ * (damping by sums and matching); of scenes that change growth_percent (of particles) and
+ * cost_growth (last_ms / first_ms). */
 #ifndef BENCH_SCENE_FIELD_H
 #define BENCH_SCENE_FIELD_H
 
@@ -18,6 +20,9 @@ void bench_scene_field_names(size_t size, char *names);
 
 /* "hand octree without nodes": the scene, and its engine and what it is without, where said. */
 void bench_scene_field_row(const BenchMeasure *measure, size_t size, char *name);
+
+/* The setting has its default, and the scene says so in its name. */
+void bench_take_away(BenchScene *scene, BenchWithout without);
 
 /* Measures the scene, unless the lab has its row. */
 void bench_scene_field_measure(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve);

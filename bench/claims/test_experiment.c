@@ -11,6 +11,13 @@ static BenchLab quick_lab(void)
     return (BenchLab){.quick = true, .threads = 1, .seed = 1};
 }
 
+/* The curve, until the next one is measured. */
+static const BenchCurve *curve_of(BenchLab *lab, const BenchMeasure *measure)
+{
+    int curve = bench_experiment(lab, measure);
+    return &lab->curve[curve];
+}
+
 TEST(ranges_are_even_and_rise)
 {
     int number[BENCH_RANGE_POINTS];
@@ -154,6 +161,125 @@ TEST(stages_and_bodies_share_the_step)
     int body = bench_experiment(&lab, &measure);
     assert_true(fabs(lab.curve[body].y[0] / lab.row[0].total_ms - 1) < 1e-9);
     assert_true(lab.rows == 1 && lab.row[0].instances == 1);
+    bench_lab_free(&lab);
+}
+
+/* In a cube a region has the mean of 2w + 1, less what is cut off at the ends of a row, along each
+ * axis; bars and plates add as much along one at a time, and running sums do not know of w. */
+TEST(additions_of_a_cube_are_known)
+{
+    enum { SIDE = 64 };
+    BenchLab lab = quick_lab();
+    for (int w = 1; w <= 3; w++) {
+        double row = 2 * w + 1 - w * (w + 1.0) / SIDE, share = row / (2 * w + 1);
+        const double wanted[] = {[SM_SUM_NAIVE] = share * share * share, [SM_SUM_BARS] = share};
+        for (SmSummation sums = SM_SUM_FAST; sums <= SM_SUM_NAIVE; sums++) {
+            BenchMeasure measure = {
+                .experiment = BENCH_TRY_ADDITIONS, .summation = sums, .w = {w, w, 1}};
+            const BenchCurve *curve = curve_of(&lab, &measure);
+            assert_true(curve->valid && curve->points == 1 && curve->x[0] == w);
+            if (sums == SM_SUM_FAST)
+                assert_true(curve->y[0] > 0.9 && curve->y[0] < 1.2);
+            else
+                assert_true(fabs(curve->y[0] - wanted[sums]) < 1e-9);
+        }
+    }
+    bench_lab_free(&lab);
+}
+
+/* A body without gaps or corners has one bar and one plate an index; any other has more. Naive
+ * sums add a region's members, and the mean side is that of their mean. */
+TEST(subsums_of_bodies_are_told_apart)
+{
+    BenchLab lab = quick_lab();
+    BenchMeasure measure = {.experiment = BENCH_TRY_SUBSUMS, .w = {1, 2, 2}};
+    for (int plates = 0; plates < 2; plates++) {
+        strcpy(measure.field, plates ? "one-plate" : "one-bar");
+        strcpy(measure.scene, "beam");
+        int curve = bench_experiment(&lab, &measure);
+        assert_true(lab.curve[curve].y[0] == 100 && lab.curve[curve].y[1] == 100);
+        strcpy(measure.scene, "penguin");
+        curve = bench_experiment(&lab, &measure);
+        assert_true(lab.curve[curve].y[0] < 100 && lab.curve[curve].y[0] > 0);
+        assert_true(lab.curve[curve].y[1] < 100 && lab.curve[curve].y[1] > 0);
+    }
+    BenchMeasure body = {.experiment = BENCH_TRY_BODY_ADDITIONS,
+                         .summation = SM_SUM_NAIVE,
+                         .scene = "penguin",
+                         .w = {1, 3, 3}};
+    int naive = bench_experiment(&lab, &body);
+    for (int p = 0; p < 3; p++) {
+        double side = lab.curve[naive].x[p];
+        assert_true(fabs(side * side * side / lab.curve[naive].y[p] - 1) < 1e-12);
+        assert_true(side < 2 * (p + 1) + 1);
+    }
+    bench_lab_free(&lab);
+}
+
+/* The sums of a body by all three ways, each held to naive sums in double precision. */
+TEST(sums_of_a_body_are_timed)
+{
+    BenchLab lab = quick_lab();
+    BenchMeasure measure = {.experiment = BENCH_TRY_BODY_SUMS, .scene = "penguin", .w = {1, 2, 2}};
+    for (measure.summation = SM_SUM_FAST; measure.summation <= SM_SUM_NAIVE; measure.summation++) {
+        const BenchCurve *curve = curve_of(&lab, &measure);
+        if (curve->busy) {
+            bench_lab_free(&lab);
+            skip_because("other programs take the processors");
+        }
+        assert_true(curve->valid && curve->points == 2);
+        assert_true(curve->y[0] > 0 && curve->x[1] > curve->x[0] && curve->x[1] < 5);
+    }
+    strcpy(measure.scene, "hand-sampled");
+    assert_non_null(strstr(curve_of(&lab, &measure)->reason, "on a lattice"));
+    bench_lab_free(&lab);
+}
+
+/* Smoothed, a bent body comes nearer to its rest shape with every step; what a plastic block keeps
+ * of its fall an elastic one does not. */
+TEST(what_is_left_is_seen)
+{
+    BenchLab lab = quick_lab();
+    BenchMeasure measure = {
+        .experiment = BENCH_TRY_LEFT, .scene = "penguin", .field = "smoothed", .n = {1, 64, 4}};
+    const BenchCurve *curve = curve_of(&lab, &measure);
+    assert_true(curve->valid && curve->points == 4 && curve->y[3] < 0.1 * curve->y[0]);
+    for (int p = 1; p < 4; p++) assert_true(curve->y[p] < curve->y[p - 1]);
+    BenchMeasure block = {.experiment = BENCH_TRY_LEFT, .scene = "block", .n = {60, 60, 1}};
+    double plastic = curve_of(&lab, &block)->y[0];
+    block.without = BENCH_WITHOUT_CREEP;
+    int elastic = bench_experiment(&lab, &block);
+    assert_true(lab.curve[elastic].valid && plastic > 10 * lab.curve[elastic].y[0]);
+    bench_lab_free(&lab);
+}
+
+TEST(fingers_are_pushed)
+{
+    BenchLab lab = quick_lab();
+    BenchMeasure measure = {.experiment = BENCH_TRY_PUSHED, .scene = "hand-stiffness"};
+    strcpy(measure.field, "others-percent");
+    const BenchCurve *others = curve_of(&lab, &measure);
+    assert_true(others->valid && others->y[0] >= 0 && others->y[0] < 100);
+    strcpy(measure.field, "softness");
+    double soft = curve_of(&lab, &measure)->y[0];
+    measure.without = BENCH_WITHOUT_WIDTHS;
+    int even = bench_experiment(&lab, &measure);
+    assert_true(lab.curve[even].valid && soft > lab.curve[even].y[0]);
+    strcpy(measure.scene, "penguin");
+    assert_non_null(strstr(curve_of(&lab, &measure)->reason, "two forces"));
+    bench_lab_free(&lab);
+}
+
+TEST(distances_reach_farther_for_more)
+{
+    BenchLab lab = quick_lab();
+    BenchMeasure measure = {
+        .experiment = BENCH_TRY_DISTANCES, .scene = "hand-sampled-whole", .n = {4, 16, 3}};
+    const BenchCurve *curve = curve_of(&lab, &measure);
+    assert_true(curve->busy || (curve->valid && curve->points == 3));
+    for (int p = 1; p < curve->points; p++) assert_true(curve->x[p] > curve->x[p - 1]);
+    strcpy(measure.scene, "penguin");
+    assert_non_null(strstr(curve_of(&lab, &measure)->reason, "no octree"));
     bench_lab_free(&lab);
 }
 

@@ -10,6 +10,16 @@ from tables import Table, explain_marks
 GROUPS = {
     "sums": ("Cost of the sums against w", "FastLSM Fig. 4: nanoseconds a particle for the sums alone, in a solid cube, "
              "against the mean side of its regions; the exponent that fits stands with each curve.", "xy"),
+    "body": ("Cost of the sums of a body against w", "FastLSM Fig. 4 is of the solid Buddha: the sums of the solid statue, "
+             "with its irregular regions, against their mean side.", "xy"),
+    "additions": ("Additions of the sums", "FastLSM section 3.1 in a solid cube: additions an index by (2w+1)³, 3(2w+1) or "
+                  "6.", ""),
+    "subsums": ("Indices with one bar or plate", "FastLSM section 3.1: the share of the lattice's indices that own a single "
+                "one.", ""),
+    "left": ("What is left of a deformation", "FastLSM section 2: a body whose particles go to their goals, again and again.",
+             "xy"),
+    "distances": ("Cost of distances", "Octree section 6.2: from a leaf to all within reach, against how many those are.",
+                  "xy"),
     "smoothing": ("How far two steps of smoothing spread", "FastLSM Fig. 2: a cross-section of a bar is displaced and two "
                   "steps of smoothing follow.", ""),
     "blending": ("How well clusters blend", "FastLSM Fig. 3: the largest jump of the displacement gradient between "
