@@ -72,7 +72,10 @@ SmCode bench_rest_left(const BenchExperiment *of, SmError *error)
     SmCode code = SM_OK;
     if (scene->instances != 1)
         return sm_fail(error, SM_INPUT, "%.100s: one body is wanted", scene->file);
-    scene->params.damping_every = of->measure->every;
+    if (of->measure->every) scene->params.damping_every = of->measure->every;
+    if (smoothed)
+        bench_curve_begin(of->curve, "steps of smoothing",
+                          "rms distance from the rest shape, cells");
     for (int c = 0; c < count && !code && of->curve->valid; c++) {
         BenchRunner runner;
         code = bench_runner_exact(scene, of->body, &runner, error);
@@ -136,8 +139,8 @@ SmCode bench_rest_pushed(const BenchExperiment *of, SmError *error)
     BenchRunner runner;
     SmCode code = bench_runner_exact(scene, of->body, &runner, error);
     if (!code) {
-        long steps = (long)scene->frames * scene->steps_per_frame;
-        for (long s = 0; s < steps; s++) bench_runner_step(&runner);
+        long frames = of->lab->quick ? scene->frames / 4 : scene->frames;
+        for (long s = 0; s < frames * scene->steps_per_frame; s++) bench_runner_step(&runner);
         double first = moved_by(&runner, force, false);
         bench_curve_exact(of->curve, 0,
                           others ? 100 * moved_by(&runner, force, true) / first

@@ -10,8 +10,10 @@ from tables import Table, explain_marks
 GROUPS = {
     "sums": ("Cost of the sums against w", "FastLSM Fig. 4: nanoseconds a particle for the sums alone, in a solid cube, "
              "against the mean side of its regions; the exponent that fits stands with each curve.", "xy"),
-    "body": ("Cost of the sums of a body against w", "FastLSM Fig. 4 is of the solid Buddha: the sums of the solid statue, "
+    "body-sums": ("Cost of the sums of a body against w", "FastLSM Fig. 4 is of the solid Buddha: the sums of the solid statue, "
              "with its irregular regions, against their mean side.", "xy"),
+    "body-additions": ("Additions of the sums of a body", "The same by additions a particle: an index of an irregular body "
+                       "owns the more different bars and plates the wider its regions are.", "xy"),
     "additions": ("Additions of the sums", "FastLSM section 3.1 in a solid cube: additions an index by (2w+1)³, 3(2w+1) or "
                   "6.", ""),
     "subsums": ("Indices with one bar or plate", "FastLSM section 3.1: the share of the lattice's indices that own a single "
@@ -101,7 +103,7 @@ def label(name, curve):
     parts = [part for part in name.split(".")[1:] if part[:1] not in "wn" or "-" not in part]
     text = " ".join(part for part in parts if not part.isdigit() and part != "profile") or name.split(".")[0]
     low, high = curve["exponent_low"], curve["exponent_high"]
-    if name.startswith(("sums", "size")) and curve["exponent"] == curve["exponent"]:
+    if name.startswith(("sums", "size", "body", "distances")) and curve["exponent"] == curve["exponent"]:
         text += f": power {curve['exponent']:.2f} ({low:.2f} to {high:.2f})"
     return text
 
@@ -115,9 +117,27 @@ def plain_ticks(axes):
         axes.xaxis.set_major_formatter(FormatStrFormatter("%g"))
 
 
+def kind_of(group):
+    """The entry of GROUPS that a group of curves is of."""
+    return group if group in GROUPS else group.split("-")[0]
+
+
+def draw_printed(axes, group, curves):
+    """What FastLSM section 3.1 counts for a side s of regions, s^3, 3 s and 6, as lines; of times, in units of fast sums
+    at the first width, as its Fig. 4 has them."""
+    fast = [curve for name, curve in curves if "naive" not in name and "bars" not in name]
+    if kind_of(group) not in ("sums", "body-sums", "body-additions") or not fast:
+        return
+    unit = 1 if group == "body-additions" else min(curve["y"][0] for curve in fast) / 6
+    side = np.geomspace(min(curve["x"][0] for curve in fast), max(curve["x"][-1] for curve in fast), 40)
+    for n, additions in enumerate((side**3, 3 * side, np.full_like(side, 6))):
+        axes.plot(side, unit * additions, color=PAPER, linewidth=0.9, linestyle="--", zorder=0,
+                  label=None if n else "paper: $s^3$, 3s, 6 additions")
+
+
 def group_figure(group, curves):
     """`curves` are (name, curve) of one group that have the same axes."""
-    title, caption, logarithmic = GROUPS.get(group.split("-")[0], (group, "Measured for a claim.", ""))
+    title, caption, logarithmic = GROUPS.get(kind_of(group), (group, "Measured for a claim.", ""))
     if group.endswith("-profile"):
         title += ": the profile"
     figure, axes = canvas(6.4, 3.8)
@@ -129,6 +149,7 @@ def group_figure(group, curves):
                       markersize=4, capsize=2, linewidth=1.3, label=label(name, curve))
         data += [[name, float(a), float(b), float(c), float(d)] for a, b, c, d in zip(x, y, curve["low"], curve["high"])]
         words.append(f"{label(name, curve)}: from {number(y[0])} at {number(x[0])} to {number(y[-1])} at {number(x[-1])}")
+    draw_printed(axes, group, curves)
     axes.set_xlabel(curves[0][1]["x_name"])
     y_name = curves[0][1]["y_name"]
     axes.set_ylabel(y_name)
@@ -154,5 +175,5 @@ def figures(source):
         group = name.split(".")[0] + ("-profile" if name.endswith(".profile") else "")
         groups.setdefault((group, curve["x_name"], curve["y_name"]), []).append((name, curve))
     order = list(GROUPS)
-    ranked = sorted(groups, key=lambda g: (order.index(g[0].split("-")[0]) if g[0].split("-")[0] in order else 99, g))
+    ranked = sorted(groups, key=lambda g: (order.index(kind_of(g[0])) if kind_of(g[0]) in order else 99, g))
     return [group_figure(key[0], groups[key]) for key in ranked]
