@@ -309,7 +309,7 @@ static void drop(const char *name, double *hit, double *dent, double *volume)
     double height = run.body.high[1] - run.body.low[1];
     bool *all = sm_alloc((size_t)run.runner.count, sizeof *all);
     for (long p = 0; p < run.runner.count; p++) all[p] = true;
-    *hit = 0;
+    *hit = *dent = 0;
     for (int frame = 0; frame < run.scene.frames; frame++) {
         steps(&run, run.scene.steps_per_frame);
         *dent = off_rigid(&run, all, all) / height;

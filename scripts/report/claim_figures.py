@@ -167,10 +167,17 @@ def group_figure(group, curves):
                   + "; ".join(words) + ".", ["curve", "x", "y", "low", "high"], data).draw(figure)
 
 
+def is_part(name, curve, curves):
+    """Is a longer curve of the same thing there?"""
+    stem = name.rsplit(".w", 1)[0]
+    return any(other.rsplit(".w", 1)[0] == stem and longer["valid"] and len(longer["x"]) > len(curve["x"])
+               for other, longer in curves.items() if ".w" in name)
+
+
 def figures(source):
     groups = {}
     for name, curve in source.curves.items():
-        if not curve["valid"] or len(curve["x"]) < 2:
+        if not curve["valid"] or len(curve["x"]) < 2 or is_part(name, curve, source.curves):
             continue
         group = name.split(".")[0] + ("-profile" if name.endswith(".profile") else "")
         groups.setdefault((group, curve["x_name"], curve["y_name"]), []).append((name, curve))
