@@ -5,18 +5,30 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { MOST_TERMS = REF_MLS_QUADRATIC, MOST_PARTS = 6 };
+
+/* Parts of a function: value and three slopes; in a plane value, two slopes, three second ones. */
+static inline int parts_of(int dims)
+{
+    return dims == 3 ? 4 : MOST_PARTS;
+}
+
+/* Which slopes the second derivatives of a plane are of, as the numbers of parts. */
+static const int second_of[3][2] = {{1, 1}, {2, 2}, {1, 2}};
+
 RefShape ref_shape_create(const RefNodes *nodes)
 {
     size_t room = (size_t)nodes->most;
     return (RefShape){.node = sm_alloc(room, sizeof(int)),
                       .value = sm_alloc(room, sizeof(double)),
                       .gradient = sm_alloc(room, sizeof(double[3])),
-                      .scratch = sm_alloc(room, sizeof(double[4 + REF_MLS_QUADRATIC]))};
+                      .second = nodes->plane ? sm_alloc(room, sizeof(double[3])) : NULL,
+                      .scratch = sm_alloc(room, sizeof(double[4 + MOST_TERMS]))};
 }
 
 void ref_shape_free(RefShape *shape)
 {
-    sm_free_all(shape->node, shape->value, shape->gradient, shape->scratch);
+    sm_free_all(shape->node, shape->value, shape->gradient, shape->second, shape->scratch);
     *shape = (RefShape){0};
 }
 
@@ -28,42 +40,60 @@ static double spline(double s, double *slope)
     return a < 0.5 ? 1 - 2 * s * s : 2 * (1 - a) * (1 - a);
 }
 
-/* The nodes that cover x, and for each w, its gradient and the basis at the node. */
-static void gather(const RefNodes *nodes, int terms, const double x[3], RefShape *shape)
+/* The parts of a product of splines (eq. 12). */
+static void weigh(int dims, const double s[3], double reach, double *w)
 {
-    int near, count = 0;
-    const int *member = ref_nodes_near(nodes, x, &near);
-    double scale = 0;
-    for (int n = 0; n < near; n++) {
-        const double *at = nodes->position[member[n]];
-        double reach = nodes->reach[member[n]], s[3], c[3], slope[3];
-        for (int d = 0; d < 3; d++) s[d] = (x[d] - at[d]) / reach;
-        if (!(fabs(s[0]) < 1 && fabs(s[1]) < 1 && fabs(s[2]) < 1)) continue;
-        if (scale == 0) scale = reach;
-        for (int d = 0; d < 3; d++) c[d] = spline(s[d], slope + d);
-        double *w = shape->scratch + (size_t)count * (size_t)(4 + terms), *p = w + 4;
+    double c[3], slope[3], bend[2];
+    for (int d = 0; d < dims; d++) c[d] = spline(s[d], slope + d);
+    if (dims == 3) {
         w[0] = c[0] * c[1] * c[2];
         w[1] = slope[0] * c[1] * c[2] / reach;
         w[2] = c[0] * slope[1] * c[2] / reach;
         w[3] = c[0] * c[1] * slope[2] / reach;
+        return;
+    }
+    for (int d = 0; d < 2; d++) bend[d] = (fabs(s[d]) < 0.5 ? -4 : 4) / (reach * reach);
+    w[0] = c[0] * c[1];
+    w[1] = slope[0] * c[1] / reach;
+    w[2] = c[0] * slope[1] / reach;
+    w[3] = bend[0] * c[1];
+    w[4] = c[0] * bend[1];
+    w[5] = slope[0] * slope[1] / (reach * reach);
+}
+
+/* The nodes that cover x, and for each w's parts and the basis at the node. */
+static void gather(const RefNodes *nodes, int terms, const double x[3], RefShape *shape)
+{
+    int near, count = 0, dims = nodes->plane ? 2 : 3, parts = parts_of(dims);
+    const int *member = ref_nodes_near(nodes, x, &near);
+    double scale = 0;
+    for (int n = 0; n < near; n++) {
+        const double *at = nodes->position[member[n]];
+        double reach = nodes->reach[member[n]], s[3] = {0};
+        for (int d = 0; d < dims; d++) s[d] = (x[d] - at[d]) / reach;
+        if (!(fabs(s[0]) < 1 && fabs(s[1]) < 1 && fabs(s[2]) < 1)) continue;
+        if (scale == 0) scale = reach;
+        double *w = shape->scratch + (size_t)count * (size_t)(parts + terms), *p = w + parts;
+        weigh(dims, s, reach, w);
         p[0] = 1;
-        for (int d = 0; d < 3; d++) p[1 + d] = (at[d] - x[d]) / scale;
-        if (terms == REF_MLS_QUADRATIC)
-            for (int i = 1, t = 4; i < 4; i++)
-                for (int j = i; j < 4; j++) p[t++] = p[i] * p[j];
-        shape->node[count++] = member[n];
+        for (int d = 0; d < dims; d++) p[1 + d] = (at[d] - x[d]) / scale;
+        if (terms > dims + 1)
+            for (int i = 1, t = dims + 1; i <= dims; i++)
+                for (int j = i; j <= dims; j++) p[t++] = p[i] * p[j];
+        shape->node[count++] = nodes->owner ? nodes->owner[member[n]] : member[n];
     }
     shape->count = count;
     for (int n = 0; n < count; n++) shape->value[n] = scale;
 }
 
-/* Moment matrices A and A_,k, upper halves; A[0] is A. */
-static inline void moments(int terms, const RefShape *shape, double A[4][REF_MLS_QUADRATIC * 10])
+/* Moment matrices A and its derivatives, upper halves; A[0] is A. */
+static inline void moments(int parts, int terms, const RefShape *shape,
+                           double A[MOST_PARTS][MOST_TERMS * MOST_TERMS])
 {
-    memset(A, 0, 4 * sizeof A[0]);
+    memset(A, 0, (size_t)parts * sizeof A[0]);
     for (int n = 0; n < shape->count; n++) {
-        const double *w = shape->scratch + n * (4 + terms), *p = w + 4;
-        for (int k = 0; k < 4; k++)
+        const double *w = shape->scratch + n * (parts + terms), *p = w + parts;
+        for (int k = 0; k < parts; k++)
             for (int i = 0; i < terms; i++) {
                 double wp = w[k] * p[i];
                 for (int j = 0; j < terms; j++) A[k][terms * i + j] += wp * p[j];
@@ -102,38 +132,83 @@ static inline void solve(int terms, const double *L, const double *S, double *b)
     for (int i = 0; i < terms; i++) b[i] /= S[i];
 }
 
+/* y -= A x */
+static inline void subtract_product(int terms, const double *A, const double *x, double *y)
+{
+    for (int i = 0; i < terms; i++)
+        for (int j = 0; j < terms; j++) y[i] -= A[terms * i + j] * x[j];
+}
+
+/* gamma,kl = A^-1 (p,kl - A,kl gamma - A,k gamma,l - A,l gamma,k) in a plane. */
+static inline void differentiate_twice(int terms, double scale,
+                                       double A[MOST_PARTS][MOST_TERMS * MOST_TERMS],
+                                       const double *L, const double *S,
+                                       double gamma[MOST_PARTS][MOST_TERMS])
+{
+    static const int square[3] = {3, 5, 4}; /* the terms 11, 22, 12 */
+    for (int m = 0; m < 3; m++) {
+        int k = second_of[m][0], l = second_of[m][1];
+        if (terms == REF_MLS_PLANE_QUADRATIC)
+            gamma[3 + m][square[m]] = (k == l ? 2 : 1) / (scale * scale);
+        subtract_product(terms, A[3 + m], gamma[0], gamma[3 + m]);
+        subtract_product(terms, A[k], gamma[l], gamma[3 + m]);
+        subtract_product(terms, A[l], gamma[k], gamma[3 + m]);
+        solve(terms, L, S, gamma[3 + m]);
+    }
+}
+
 /* With gamma = A^-1 p: phi_I = w_I gamma . p_I, and gamma_,k = A^-1 (p_,k - A_,k gamma) from the
  * same factors (eq. 9). p_I does not change with x: the origin of the basis is a constant. */
-static inline bool shape_at(int terms, RefShape *shape)
+static inline bool shape_at(int dims, int terms, RefShape *shape)
 {
-    double A[4][REF_MLS_QUADRATIC * 10], L[REF_MLS_QUADRATIC * 10], S[REF_MLS_QUADRATIC];
-    double gamma[4][REF_MLS_QUADRATIC] = {{1}};
-    moments(terms, shape, A);
+    double A[MOST_PARTS][MOST_TERMS * MOST_TERMS], L[MOST_TERMS * MOST_TERMS], S[MOST_TERMS];
+    double gamma[MOST_PARTS][MOST_TERMS] = {{1}};
+    int parts = parts_of(dims);
+    moments(parts, terms, shape, A);
     if (!factorise(terms, A[0], L, S)) return false;
     solve(terms, L, S, gamma[0]);
-    for (int k = 1; k < 4; k++) {
+    for (int k = 1; k <= dims; k++) {
         gamma[k][k] = 1 / shape->value[0];
-        for (int i = 0; i < terms; i++)
-            for (int j = 0; j < terms; j++) gamma[k][i] -= A[k][terms * i + j] * gamma[0][j];
+        subtract_product(terms, A[k], gamma[0], gamma[k]);
         solve(terms, L, S, gamma[k]);
     }
+    if (dims == 2) differentiate_twice(terms, shape->value[0], A, L, S, gamma);
     for (int n = 0; n < shape->count; n++) {
-        const double *w = shape->scratch + n * (4 + terms), *p = w + 4;
-        double dot[4] = {0};
-        for (int k = 0; k < 4; k++)
+        const double *w = shape->scratch + n * (parts + terms), *p = w + parts;
+        double dot[MOST_PARTS] = {0};
+        for (int k = 0; k < parts; k++)
             for (int i = 0; i < terms; i++) dot[k] += gamma[k][i] * p[i];
         shape->value[n] = w[0] * dot[0];
-        for (int d = 0; d < 3; d++) shape->gradient[n][d] = w[1 + d] * dot[0] + w[0] * dot[1 + d];
+        for (int d = 0; d < dims; d++)
+            shape->gradient[n][d] = w[1 + d] * dot[0] + w[0] * dot[1 + d];
+        for (int m = 0; m < (dims == 2 ? 3 : 0); m++) {
+            int k = second_of[m][0], l = second_of[m][1];
+            shape->second[n][m] =
+                w[3 + m] * dot[0] + w[k] * dot[l] + w[l] * dot[k] + w[0] * dot[3 + m];
+        }
     }
     return true;
+}
+
+static bool shape_of(RefBasis basis, RefShape *shape)
+{
+    switch (basis) {
+    case REF_MLS_LINEAR:
+        return shape_at(3, REF_MLS_LINEAR, shape);
+    case REF_MLS_QUADRATIC:
+        return shape_at(3, REF_MLS_QUADRATIC, shape);
+    case REF_MLS_PLANE_LINEAR:
+        return shape_at(2, REF_MLS_PLANE_LINEAR, shape);
+    case REF_MLS_PLANE_QUADRATIC:
+        return shape_at(2, REF_MLS_PLANE_QUADRATIC, shape);
+    }
+    return false;
 }
 
 bool ref_mls_at(const RefNodes *nodes, RefBasis basis, const double x[3], RefShape *shape)
 {
     gather(nodes, basis, x, shape);
-    bool defined = shape->count >= (int)basis &&
-                   (basis == REF_MLS_LINEAR ? shape_at(REF_MLS_LINEAR, shape)
-                                            : shape_at(REF_MLS_QUADRATIC, shape));
+    bool defined = shape->count >= (int)basis && shape_of(basis, shape);
     if (!defined) shape->count = 0;
     return defined;
 }
@@ -142,7 +217,7 @@ bool ref_mls_at(const RefNodes *nodes, RefBasis basis, const double x[3], RefSha
 static void enlarge(RefNodes *nodes, size_t wanted, const double x[3], double *distance,
                     size_t *nearest)
 {
-    size_t count = (size_t)nodes->count;
+    size_t count = (size_t)(nodes->count + nodes->images);
     if (wanted > count) wanted = count;
     for (size_t n = 0; n < count; n++) {
         distance[n] = 0;
@@ -151,7 +226,8 @@ static void enlarge(RefNodes *nodes, size_t wanted, const double x[3], double *d
     }
     gsl_sort_smallest_index(nearest, wanted, distance, 1, count);
     for (size_t k = 0; k < wanted; k++) {
-        double *reach = nodes->reach + nearest[k];
+        size_t owner = nodes->owner ? (size_t)nodes->owner[nearest[k]] : nearest[k];
+        double *reach = nodes->reach + owner;
         *reach = fmax(*reach, 1.25 * distance[nearest[k]]);
     }
 }
@@ -161,8 +237,9 @@ static long enlarge_all(RefNodes *nodes, RefBasis basis, size_t wanted, long cou
                         const double (*x)[3])
 {
     RefShape shape = ref_shape_create(nodes);
-    double *distance = sm_alloc((size_t)nodes->count, sizeof *distance);
-    size_t *nearest = sm_alloc((size_t)nodes->count, sizeof *nearest);
+    size_t entries = (size_t)(nodes->count + nodes->images);
+    double *distance = sm_alloc(entries, sizeof *distance);
+    size_t *nearest = sm_alloc(entries, sizeof *nearest);
     long bad = 0;
     for (long p = 0; p < count; p++)
         if (!ref_mls_at(nodes, basis, x[p], &shape)) {

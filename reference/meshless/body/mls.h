@@ -1,17 +1,24 @@
-/* mls.h - moving least squares shape functions and their derivatives (meshless section 3). */
+/* mls.h - moving least squares shape functions and their derivatives (meshless section 3), in space
+ * and in the plane of a shell's parameters. */
 #ifndef REF_MLS_H
 #define REF_MLS_H
 
 #include "nodes.h"
 
-typedef enum { REF_MLS_LINEAR = 4, REF_MLS_QUADRATIC = 10 } RefBasis; /* the number of its terms */
+typedef enum { /* the number of its terms */
+               REF_MLS_LINEAR = 4,
+               REF_MLS_QUADRATIC = 10,
+               REF_MLS_PLANE_LINEAR = 3, /* for nodes in a plane */
+               REF_MLS_PLANE_QUADRATIC = 6
+} RefBasis;
 
 /* The shape functions that are not zero at one point. */
 typedef struct {
     int count;
-    int *node;             /* [count] rising */
+    int *node;             /* [count] rising, but for those of images, which come last */
     double *value;         /* [count] phi */
     double (*gradient)[3]; /* [count] */
+    double (*second)[3];   /* [count] in a plane: phi,11, phi,22, phi,12 */
     double *scratch;
 } RefShape;
 
@@ -23,7 +30,8 @@ void ref_shape_free(RefShape *shape);
  * and scaled by the covers' size. False, and count 0, where too few nodes cover x or they are close
  * to a plane (a conic, for the quadratic basis): where a pivot of the moment matrix, scaled to ones
  * on its diagonal, is below REF_LEAST_PIVOT: from there on
- * reproduction is good to 1e-10. O(nodes covering x). */
+ * reproduction is good to 1e-10. Second derivatives jump where the weights' do, at a half and the
+ * whole of a reach. A node whose image covers x, too, is there twice. O(nodes covering x). */
 bool ref_mls_at(const RefNodes *nodes, RefBasis basis, const double x[3], RefShape *shape);
 
 #define REF_LEAST_PIVOT 1e-3

@@ -9,14 +9,15 @@ enum { MOST_BINS = 1 << 21 };
 
 void ref_nodes_free(RefNodes *nodes)
 {
-    sm_free_all(nodes->position, nodes->reach, nodes->start, nodes->member);
+    sm_free_all(nodes->position, nodes->reach, nodes->owner, nodes->start, nodes->member);
     *nodes = (RefNodes){0};
 }
 
-/* Bins that the cover of node n touches, low and high. */
+/* Bins that the cover of node n touches, low and high. A plane is one bin thick. */
 static void touched(const RefNodes *nodes, long n, int low[3], int high[3])
 {
-    for (int d = 0; d < 3; d++) {
+    low[2] = high[2] = 0;
+    for (int d = 0; d < (nodes->plane ? 2 : 3); d++) {
         double at = nodes->position[n][d] - nodes->low[d];
         low[d] = (int)fmax(floor((at - nodes->reach[n]) / nodes->bin), 0);
         high[d] = (int)fmin(floor((at + nodes->reach[n]) / nodes->bin), nodes->size[d] - 1);
@@ -47,23 +48,66 @@ static long lay_out(RefNodes *nodes)
         nodes->low[d] = INFINITY;
         high[d] = -INFINITY;
     }
-    for (long n = 0; n < nodes->count; n++) {
+    for (long n = 0; n < nodes->count + nodes->images; n++) {
         for (int d = 0; d < 3; d++) {
             nodes->low[d] = fmin(nodes->low[d], nodes->position[n][d] - nodes->reach[n]);
             high[d] = fmax(high[d], nodes->position[n][d] + nodes->reach[n]);
         }
         least = fmin(least, nodes->reach[n]);
     }
+    int dims = nodes->plane ? 2 : 3;
     for (nodes->bin = least / 3; bins > MOST_BINS; nodes->bin *= 1.1) {
         bins = 1;
-        for (int d = 0; d < 3; d++) bins *= ceil((high[d] - nodes->low[d]) / (1.1 * nodes->bin));
+        for (int d = 0; d < dims; d++) bins *= ceil((high[d] - nodes->low[d]) / (1.1 * nodes->bin));
     }
     long all = 1;
-    for (int d = 0; d < 3; d++) {
+    if (nodes->plane) {
+        nodes->low[2] = -nodes->bin / 2;
+        nodes->size[2] = 1;
+    }
+    for (int d = 0; d < dims; d++) {
         nodes->size[d] = (int)ceil((high[d] - nodes->low[d]) / nodes->bin);
         all *= nodes->size[d];
     }
     return all;
+}
+
+/* Whether node n's cover, moved across a seam, reaches into what lies there by more than rounding.
+ */
+static bool crosses(const RefNodes *nodes, long n, const RefSeam *seam)
+{
+    double reach = nodes->reach[n] * (1 - 1e-9);
+    for (int d = 0; d < 2; d++) {
+        double at = nodes->position[n][d] + seam->shift[d];
+        if (at + reach <= seam->low[d] || at - reach >= seam->high[d]) return false;
+    }
+    return true;
+}
+
+/* Puts the images behind the nodes. */
+static void place_images(RefNodes *nodes)
+{
+    long end = nodes->count, room = nodes->count;
+    if (nodes->seams == 0) return;
+    nodes->owner = sm_realloc(nodes->owner, (size_t)room, sizeof *nodes->owner);
+    for (long n = 0; n < nodes->count; n++) nodes->owner[n] = (int)n;
+    for (long n = 0; n < nodes->count; n++)
+        for (int s = 0; s < nodes->seams; s++) {
+            const RefSeam *seam = nodes->seam + s;
+            if (!crosses(nodes, n, seam)) continue;
+            if (end == room) {
+                room = 2 * room + 62;
+                nodes->owner = sm_realloc(nodes->owner, (size_t)room, sizeof *nodes->owner);
+                nodes->reach = sm_realloc(nodes->reach, (size_t)room, sizeof *nodes->reach);
+                nodes->position = sm_realloc(nodes->position, (size_t)room, sizeof(double[3]));
+            }
+            nodes->owner[end] = (int)n;
+            nodes->reach[end] = nodes->reach[n];
+            for (int d = 0; d < 3; d++)
+                nodes->position[end][d] = nodes->position[n][d] + (d < 2 ? seam->shift[d] : 0);
+            end++;
+        }
+    nodes->images = end - nodes->count;
 }
 
 void ref_nodes_bin(RefNodes *nodes)
@@ -73,16 +117,18 @@ void ref_nodes_bin(RefNodes *nodes)
     nodes->start = NULL;
     nodes->member = NULL;
     nodes->most = 0;
+    nodes->images = 0;
     if (nodes->count == 0) return;
-    long bins = lay_out(nodes);
+    place_images(nodes);
+    long bins = lay_out(nodes), entries = nodes->count + nodes->images;
     nodes->start = sm_alloc((size_t)bins + 2, sizeof *nodes->start);
-    for (long n = 0; n < nodes->count; n++) enter(nodes, n, true);
+    for (long n = 0; n < entries; n++) enter(nodes, n, true);
     for (long b = 0; b < bins; b++) {
         if (nodes->start[b + 1] > nodes->most) nodes->most = (int)nodes->start[b + 1];
         nodes->start[b + 1] += nodes->start[b];
     }
     nodes->member = sm_alloc((size_t)nodes->start[bins], sizeof *nodes->member);
-    for (long n = 0; n < nodes->count; n++) enter(nodes, n, false);
+    for (long n = 0; n < entries; n++) enter(nodes, n, false);
     memmove(nodes->start + 1, nodes->start, (size_t)bins * sizeof *nodes->start);
     nodes->start[0] = 0;
 }

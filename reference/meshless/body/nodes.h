@@ -1,21 +1,33 @@
-/* nodes.h - a meshless body's nodes and their covers (meshless section 4.1.1).
+/* nodes.h - a meshless body's nodes and their covers (meshless sections 4.1.1 and 4.2).
  *
  * A node's cover is the open cube of half-edge `reach` around it. Bins over the box of all covers
- * say which nodes may cover a point without a search. */
+ * say which nodes may cover a point without a search. A shell's nodes stand in the plane of its
+ * parameters, with a third coordinate of 0, and their covers are squares, which go on across seams:
+ * where one does, an image of the node stands beyond the seam. */
 #ifndef REF_NODES_H
 #define REF_NODES_H
 
 #include "octants.h"
 
+/* A place in the plane is also the place + shift, where that is in the rectangle low..high. */
+typedef struct {
+    double low[2], high[2], shift[2];
+} RefSeam;
+
 typedef struct {
     long count;
-    double (*position)[3]; /* [count] */
-    double *reach;         /* [count] half the cover's edge */
-    double low[3], bin;    /* the bins' corner and edge */
-    int size[3];           /* bins a direction */
-    long *start;           /* [bins + 1] */
-    int *member;           /* [start[bins]] nodes whose covers touch the bin, rising */
-    int most;              /* members of the fullest bin */
+    double (*position)[3]; /* [count + images] */
+    double *reach;         /* [count + images] half the cover's edge */
+    long images;           /* ref_nodes_bin() makes them */
+    int *owner; /* [count + images] the node that each is; NULL: each itself, no images */
+    bool plane; /* of a shell */
+    int seams;
+    const RefSeam *seam; /* [seams] the caller's, as long as reaches change */
+    double low[3], bin;  /* the bins' corner and edge */
+    int size[3];         /* bins a direction */
+    long *start;         /* [bins + 1] */
+    int *member;         /* [start[bins]] nodes and images whose covers touch the bin, rising */
+    int most;            /* members of the fullest bin */
 } RefNodes;
 
 /* A node at the centre of every octant that is inside or cut; those whose centre is outside move
@@ -28,10 +40,10 @@ void ref_nodes_place(const RefField *field, const RefOctants *tree, double alpha
 
 void ref_nodes_free(RefNodes *nodes);
 
-/* Makes the bins anew after reaches have changed. */
+/* Makes images and bins anew after reaches have changed. */
 void ref_nodes_bin(RefNodes *nodes);
 
-/* The nodes that may cover x: `count` of them. NULL where there are none. O(1). */
+/* The nodes and images that may cover x: `count` of them. NULL where there are none. O(1). */
 static inline const int *ref_nodes_near(const RefNodes *nodes, const double x[3], int *count)
 {
     long bin = 0;

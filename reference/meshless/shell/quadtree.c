@@ -1,0 +1,198 @@
+#include "quadtree.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void ref_quadtree_free(RefQuadtree *tree)
+{
+    free(tree->cell);
+    *tree = (RefQuadtree){0};
+}
+
+void ref_quadtree_cell(const RefQuadtree *tree, const RefCell *cell, double middle[2],
+                       double edge[2])
+{
+    for (int d = 0; d < 2; d++) {
+        edge[d] = tree->unit[d] * cell->size;
+        middle[d] = tree->chart->low[d] + tree->unit[d] * (cell->corner[d] + 0.5 * cell->size);
+    }
+}
+
+int ref_quadtree_at(const RefQuadtree *tree, const double theta[2])
+{
+    int place[2], at = 0, whole = 1 << REF_QUADTREE_LEVELS;
+    for (int d = 0; d < 2; d++) {
+        double cells = floor((theta[d] - tree->chart->low[d]) / tree->unit[d]);
+        place[d] = (int)fmin(fmax(cells, 0), (double)tree->roots[d] * whole - 1);
+    }
+    at = place[1] / whole * tree->roots[0] + place[0] / whole;
+    while (tree->cell[at].child >= 0) {
+        int half = tree->cell[at].size / 2, which = 0;
+        for (int d = 0; d < 2; d++)
+            if (place[d] >= tree->cell[at].corner[d] + half) which |= 1 << d;
+        at = tree->cell[at].child + which;
+    }
+    return at;
+}
+
+static void split(RefQuadtree *tree, long at)
+{
+    sm_make_room(tree->cell, tree->room, tree->count + 4);
+    RefCell parent = tree->cell[at];
+    int half = parent.size / 2;
+    tree->cell[at].child = (int)tree->count;
+    tree->leaves += 3;
+    for (int which = 0; which < 4; which++)
+        tree->cell[tree->count++] = (RefCell){
+            {parent.corner[0] + half * (which & 1), parent.corner[1] + half * (which >> 1)},
+            half,
+            -1};
+}
+
+/* The longer edge on the surface. */
+static double edge_on_surface(const RefQuadtree *tree, const RefCell *cell)
+{
+    double middle[2], edge[2], largest = 0;
+    ref_quadtree_cell(tree, cell, middle, edge);
+    for (int n = 0; n < 25; n++) {
+        double theta[2] = {middle[0] + edge[0] * (n % 5 - 2) / 4.0,
+                           middle[1] + edge[1] * (n / 5 - 2) / 4.0};
+        largest = fmax(largest, tree->chart->factor(tree->chart->data, theta));
+    }
+    return largest * fmax(edge[0], edge[1]);
+}
+
+static bool refine(RefQuadtree *tree, double threshold)
+{
+    for (long at = 0; at < tree->count; at++) {
+        if (tree->cell[at].size == 1 || !(edge_on_surface(tree, tree->cell + at) > threshold))
+            continue;
+        if (tree->count + 4 > REF_MOST_CELLS) return false;
+        split(tree, at);
+    }
+    return true;
+}
+
+/* Splits what lies across side `side` of a cell that is two levels finer. */
+static bool relieve(RefQuadtree *tree, RefCell fine, int side)
+{
+    double middle[2], edge[2];
+    int axis = side / 2;
+    ref_quadtree_cell(tree, &fine, middle, edge);
+    middle[axis] += (side % 2 ? 0.5 : -0.5) * (edge[axis] + tree->unit[axis]);
+    if (!ref_chart_enter(tree->chart, middle)) return false;
+    int at = ref_quadtree_at(tree, middle);
+    if (tree->cell[at].size <= 2 * fine.size) return false;
+    split(tree, at);
+    return true;
+}
+
+/* One-level adjustment; splitting may call for more splitting. */
+static void balance(RefQuadtree *tree)
+{
+    bool changed = true;
+    while (changed) {
+        changed = false;
+        for (long at = 0; at < tree->count; at++)
+            for (int side = 0; side < 4 && tree->cell[at].child < 0; side++)
+                changed |= relieve(tree, tree->cell[at], side);
+    }
+}
+
+static void plant(const RefChart *chart, int across, RefQuadtree *tree)
+{
+    double side[2], shorter;
+    int whole = 1 << REF_QUADTREE_LEVELS;
+    for (int d = 0; d < 2; d++) side[d] = chart->high[d] - chart->low[d];
+    shorter = fmin(side[0], side[1]);
+    *tree = (RefQuadtree){.chart = chart};
+    for (int d = 0; d < 2; d++) {
+        tree->roots[d] = (int)fmax(rint(across * side[d] / shorter), 1);
+        tree->unit[d] = side[d] / tree->roots[d] / whole;
+    }
+    tree->count = tree->leaves = tree->room = (long)tree->roots[0] * tree->roots[1];
+    tree->cell = sm_alloc((size_t)tree->count, sizeof *tree->cell);
+    for (int n = 0; n < tree->count; n++)
+        tree->cell[n] =
+            (RefCell){{n % tree->roots[0] * whole, n / tree->roots[0] * whole}, whole, -1};
+}
+
+static SmCode check(const RefChart *chart, int across, SmError *error)
+{
+    double side[2] = {chart->high[0] - chart->low[0], chart->high[1] - chart->low[1]};
+    double cells = across * (double)across * fmax(side[0] / side[1], side[1] / side[0]);
+    if (!(side[0] > 0 && side[1] > 0 && across > 0))
+        return sm_fail(error, SM_USAGE,
+                       "a chart of %g by %g with %d cells across: give it an area and a cell",
+                       side[0], side[1], across);
+    if (cells < REF_MOST_CELLS) return SM_OK;
+    return sm_fail(error, SM_INPUT,
+                   "a chart of %g by %g with %d cells across needs more than %d: give it fewer",
+                   side[0], side[1], across, REF_MOST_CELLS);
+}
+
+SmCode ref_quadtree_build(const RefChart *chart, int across, double threshold, RefQuadtree *tree,
+                          SmError *error)
+{
+    *tree = (RefQuadtree){0};
+    SmCode code = check(chart, across, error);
+    if (code != SM_OK) return code;
+    plant(chart, across, tree);
+    if (refine(tree, threshold)) {
+        balance(tree);
+        return SM_OK;
+    }
+    ref_quadtree_free(tree);
+    return sm_fail(error, SM_INPUT, "the shell needs more than %d cells: give it fewer nodes",
+                   REF_MOST_CELLS);
+}
+
+/* The number of terminal cells by threshold: infinite where there are too many. */
+static double leaves_of(const RefChart *chart, int across, double threshold)
+{
+    RefQuadtree tree;
+    if (ref_quadtree_build(chart, across, threshold, &tree, NULL) != SM_OK) return INFINITY;
+    double leaves = (double)tree.leaves;
+    ref_quadtree_free(&tree);
+    return leaves;
+}
+
+/* They fall as the threshold grows, by leaps. */
+SmCode ref_quadtree_of(const RefChart *chart, int across, long wanted, RefQuadtree *tree,
+                       SmError *error)
+{
+    *tree = (RefQuadtree){0};
+    SmCode code = check(chart, across, error);
+    if (code != SM_OK) return code;
+    double high = 0, best = INFINITY, found = 0;
+    plant(chart, across, tree);
+    for (long n = 0; n < tree->count; n++) high = fmax(high, edge_on_surface(tree, tree->cell + n));
+    ref_quadtree_free(tree);
+    double low = high / (1 << REF_QUADTREE_LEVELS);
+    for (int n = 0; n < 20; n++) {
+        double threshold = sqrt(low * high), leaves = leaves_of(chart, across, threshold);
+        double off = fabs(log(leaves / (double)wanted));
+        if (off < best) {
+            best = off;
+            found = threshold;
+        }
+        *(leaves > (double)wanted ? &low : &high) = threshold;
+    }
+    return ref_quadtree_build(chart, across, found, tree, error);
+}
+
+void ref_quadtree_nodes(const RefQuadtree *tree, double eta, RefNodes *nodes)
+{
+    *nodes = (RefNodes){
+        .plane = true, .seams = tree->chart->seams, .seam = tree->chart->seam, .count = 0};
+    nodes->position = sm_alloc((size_t)tree->leaves, sizeof *nodes->position);
+    nodes->reach = sm_alloc((size_t)tree->leaves, sizeof *nodes->reach);
+    for (long c = 0; c < tree->count; c++) {
+        if (tree->cell[c].child >= 0) continue;
+        double edge[2];
+        ref_quadtree_cell(tree, tree->cell + c, nodes->position[nodes->count], edge);
+        nodes->reach[nodes->count++] = eta / 2 * fmax(edge[0], edge[1]);
+    }
+    ref_nodes_bin(nodes);
+}

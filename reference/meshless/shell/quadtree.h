@@ -1,0 +1,51 @@
+/* quadtree.h - the balanced quadtree of a shell's parameters (meshless section 4.2).
+ *
+ * Its roots are a grid over the chart's rectangle, as close to squares as whole numbers allow, so
+ * that no cell is cut by a rim and seams lie on cells' edges. Positions count in finest cells. */
+#ifndef REF_QUADTREE_H
+#define REF_QUADTREE_H
+
+#include "../body/octants.h"
+#include "chart.h"
+
+typedef struct {
+    int corner[2], size; /* finest cells */
+    int child;           /* first of four, or -1: terminal */
+} RefCell;
+
+typedef struct {
+    const RefChart *chart; /* the caller's */
+    int roots[2];
+    double unit[2];     /* edges of a finest cell */
+    long count, leaves; /* cells, terminal ones */
+    long room;
+    RefCell *cell; /* [count] the roots, row by row, then children behind their parents */
+} RefQuadtree;
+
+enum { REF_QUADTREE_LEVELS = 14, REF_MOST_CELLS = 1 << 20 };
+
+/* Splits cells while L times their longer edge is above `threshold`, L the largest of a five by
+ * five grid in the cell, and then until cells that share a piece of an edge, also across seams,
+ * differ by one level at most. `across`: roots along the shorter side. The caller frees. Errors:
+ * SM_USAGE, a rectangle without area or `across` below 1; SM_INPUT, more than REF_MOST_CELLS cells.
+ */
+SmCode ref_quadtree_build(const RefChart *chart, int across, double threshold, RefQuadtree *tree,
+                          SmError *error);
+
+/* The same with a threshold that gives as close to `wanted` terminal cells as bisection finds. */
+SmCode ref_quadtree_of(const RefChart *chart, int across, long wanted, RefQuadtree *tree,
+                       SmError *error);
+void ref_quadtree_free(RefQuadtree *tree);
+
+/* The terminal cell at a place of the rectangle. O(levels). */
+int ref_quadtree_at(const RefQuadtree *tree, const double theta[2]);
+
+/* A cell's middle and edges. */
+void ref_quadtree_cell(const RefQuadtree *tree, const RefCell *cell, double middle[2],
+                       double edge[2]);
+
+/* A node in the middle of every terminal cell, its cover a square of `eta` times the cell's longer
+ * edge. The caller frees; the chart has to live as long. */
+void ref_quadtree_nodes(const RefQuadtree *tree, double eta, RefNodes *nodes);
+
+#endif

@@ -1,0 +1,55 @@
+/* test_charts.h - charts that are formulas, for the tests. */
+#ifndef REF_TEST_CHARTS_H
+#define REF_TEST_CHARTS_H
+
+#include "../../../lib/test_frame.h"
+#include "../../../lib/test_random.h"
+#include "quadtree.h"
+
+/* A factor that varies along waves, of whole numbers a side. */
+typedef struct {
+    double low[2], side[2], depth, phase[3];
+    int wave[3][2];
+} Waves;
+
+static inline double wavy_factor(const void *data, const double theta[2])
+{
+    const Waves *waves = data;
+    double sum = 0;
+    for (int k = 0; k < 3; k++) {
+        double angle = waves->phase[k];
+        for (int d = 0; d < 2; d++)
+            angle += 2 * M_PI * waves->wave[k][d] * (theta[d] - waves->low[d]) / waves->side[d];
+        sum += sin(angle);
+    }
+    return exp(waves->depth * sum);
+}
+
+/* A rectangle of random sides, L between exp(-3 depth) and exp(3 depth). */
+static inline RefChart random_chart(unsigned *seed, double depth, bool first, bool second,
+                                    Waves *waves)
+{
+    RefChart chart = {.factor = wavy_factor, .data = waves};
+    *waves = (Waves){.depth = depth};
+    for (int d = 0; d < 2; d++) {
+        waves->low[d] = chart.low[d] = random_between(seed, -1, 1);
+        waves->side[d] = random_between(seed, 0.7, 2);
+        chart.high[d] = chart.low[d] + waves->side[d];
+    }
+    for (int k = 0; k < 3; k++) {
+        waves->phase[k] = random_between(seed, 0, 6);
+        for (int d = 0; d < 2; d++) waves->wave[k][d] = random_int(seed, 3);
+    }
+    ref_chart_wrap(&chart, first, second);
+    return chart;
+}
+
+static inline RefQuadtree quadtree_of(const RefChart *chart, int across, long wanted)
+{
+    RefQuadtree tree;
+    SmError error = {0};
+    if (ref_quadtree_of(chart, across, wanted, &tree, &error) != SM_OK) fail_msg("%s", error.text);
+    return tree;
+}
+
+#endif

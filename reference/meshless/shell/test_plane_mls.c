@@ -1,0 +1,177 @@
+/* Shape functions in the plane, on balanced quadtrees of random charts, also across seams. */
+#include "../body/mls.h"
+#include "test_charts.h"
+
+static unsigned seed = 1;
+
+static const double cover[2] = {4,
+                                6}; /* edges in those of cells, of the linear and quadratic basis */
+static const RefBasis basis_of[2] = {REF_MLS_PLANE_LINEAR, REF_MLS_PLANE_QUADRATIC};
+
+/* Monomial `term` of degree up to 2, (1, x, y, xx, xy, yy): value, slopes, and second derivatives
+ * 11, 22, 12. */
+static void monomial(int term, const double x[2], double part[6])
+{
+    const double all[6][6] = {{1, 0, 0, 0, 0, 0},
+                              {x[0], 1, 0, 0, 0, 0},
+                              {x[1], 0, 1, 0, 0, 0},
+                              {x[0] * x[0], 2 * x[0], 0, 2, 0, 0},
+                              {x[0] * x[1], x[1], x[0], 0, 0, 1},
+                              {x[1] * x[1], 0, 2 * x[1], 0, 2, 0}};
+    memcpy(part, all[term], sizeof all[term]);
+}
+
+/* Part k of function n, times the length `unit` for every derivative. */
+static double part_of(const RefShape *shape, int n, int k, double unit)
+{
+    if (k == 0) return shape->value[n];
+    return k < 3 ? unit * shape->gradient[n][k - 1] : unit * unit * shape->second[n][k - 3];
+}
+
+/* From x to the image of a node that is nearest. */
+static void way_to(const RefChart *chart, const double at[2], const double x[2], double way[2])
+{
+    for (int d = 0; d < 2; d++) {
+        double side = chart->high[d] - chart->low[d];
+        bool wraps = false;
+        for (int s = 0; s < chart->seams; s++) wraps |= chart->seam[s].shift[d] != 0;
+        way[d] = at[d] - x[d];
+        if (wraps) way[d] -= side * rint(way[d] / side);
+    }
+}
+
+/* Sums over functions reproduce the basis about x with its derivatives, in units of the cell. */
+static void check_reproduction(const RefQuadtree *tree, const RefNodes *nodes, RefBasis basis,
+                               const double x[3], RefShape *shape)
+{
+    static const double origin[2] = {0};
+    double middle[2], edge[2];
+    ref_quadtree_cell(tree, tree->cell + ref_quadtree_at(tree, x), middle, edge);
+    assert_true(ref_mls_at(nodes, basis, x, shape));
+    for (int term = 0; term < (int)basis; term++) {
+        double sum[6] = {0}, wanted[6], there[6], way[2];
+        monomial(term, origin, wanted);
+        for (int n = 0; n < shape->count; n++) {
+            way_to(tree->chart, nodes->position[shape->node[n]], x, way);
+            for (int d = 0; d < 2; d++) way[d] /= edge[0];
+            monomial(term, way, there);
+            for (int k = 0; k < 6; k++) sum[k] += there[0] * part_of(shape, n, k, edge[0]);
+        }
+        for (int k = 0; k < 6; k++) assert_true(fabs(sum[k] - wanted[k]) < 1e-10);
+    }
+}
+
+static void random_place(const RefChart *chart, double x[3])
+{
+    x[2] = 0;
+    for (int d = 0; d < 2; d++) x[d] = random_between(&seed, chart->low[d], chart->high[d]);
+}
+
+/* Half of the places are at the rectangle's sides. */
+TEST(reproduction_to_1e_10_also_across_seams)
+{
+    for (int trial = 0; trial < 8; trial++) {
+        Waves waves;
+        RefChart chart = random_chart(&seed, 0.4, trial & 1, trial & 2, &waves);
+        RefQuadtree tree = quadtree_of(&chart, 4, 600);
+        for (int b = 0; b < 2; b++) {
+            RefNodes nodes;
+            ref_quadtree_nodes(&tree, cover[b], &nodes);
+            for (int n = 0; n < 100; n++) {
+                double x[3];
+                random_place(&chart, x);
+                if (n % 4 < 2) x[n & 1] = n % 8 < 4 ? chart.low[n & 1] : chart.high[n & 1];
+                assert_int_equal(ref_mls_cover(&nodes, basis_of[b], 1, (const double(*)[3])x), 0);
+                RefShape shape = ref_shape_create(&nodes);
+                check_reproduction(&tree, &nodes, basis_of[b], x, &shape);
+                ref_shape_free(&shape);
+            }
+            ref_nodes_free(&nodes);
+        }
+        ref_quadtree_free(&tree);
+    }
+}
+
+/* Derivatives are the slopes of values, and second ones of the first. */
+TEST(derivatives_are_slopes)
+{
+    Waves waves;
+    RefChart chart = random_chart(&seed, 0.4, true, false, &waves);
+    RefQuadtree tree = quadtree_of(&chart, 4, 300);
+    RefNodes nodes;
+    ref_quadtree_nodes(&tree, 6, &nodes);
+    RefShape at = ref_shape_create(&nodes), ahead = ref_shape_create(&nodes);
+    double step = 1e-7, x[3] = {chart.low[0] + 0.01, (chart.low[1] + chart.high[1]) / 2 + 0.013, 0};
+    assert_true(ref_mls_at(&nodes, REF_MLS_PLANE_QUADRATIC, x, &at));
+    for (int d = 0; d < 2; d++) {
+        double y[3] = {x[0], x[1], 0};
+        y[d] += step;
+        assert_true(ref_mls_at(&nodes, REF_MLS_PLANE_QUADRATIC, y, &ahead));
+        assert_int_equal(at.count, ahead.count);
+        for (int n = 0; n < at.count; n++) {
+            double cross = (ahead.gradient[n][!d] - at.gradient[n][!d]) / step;
+            double along = (ahead.gradient[n][d] - at.gradient[n][d]) / step;
+            assert_true(fabs((ahead.value[n] - at.value[n]) / step - at.gradient[n][d]) < 1e-3);
+            assert_true(fabs(cross - at.second[n][2]) < 1e-2);
+            assert_true(fabs(along - at.second[n][d]) < 1e-2);
+        }
+    }
+    ref_shape_free(&at);
+    ref_shape_free(&ahead);
+    ref_nodes_free(&nodes);
+    ref_quadtree_free(&tree);
+}
+
+/* The function of the node that stands at a place, but for whole periods; its number in the shape.
+ */
+static int function_at(const RefChart *chart, const RefNodes *nodes, const RefShape *shape,
+                       const double place[2])
+{
+    for (int n = 0; n < shape->count; n++) {
+        double way[2];
+        way_to(chart, nodes->position[shape->node[n]], place, way);
+        if (fabs(way[0]) + fabs(way[1]) < 1e-9) return n;
+    }
+    fail_msg("no node at (%g, %g)", place[0], place[1]);
+    return -1;
+}
+
+/* The same surface cut open along another line of roots. */
+TEST(moving_the_seams_changes_nothing)
+{
+    Waves waves;
+    RefChart chart = random_chart(&seed, 0.4, true, true, &waves), moved = chart;
+    RefQuadtree tree = quadtree_of(&chart, 5, 500), other;
+    for (int d = 0; d < 2; d++) {
+        double shift = (d + 1) * (chart.high[d] - chart.low[d]) / tree.roots[d];
+        moved.low[d] += shift;
+        moved.high[d] += shift;
+    }
+    ref_chart_wrap(&moved, true, true);
+    other = quadtree_of(&moved, 5, 500);
+    assert_int_equal(tree.leaves, other.leaves);
+    RefNodes nodes, others;
+    ref_quadtree_nodes(&tree, 6, &nodes);
+    ref_quadtree_nodes(&other, 6, &others);
+    RefShape shape = ref_shape_create(&nodes), same = ref_shape_create(&others);
+    for (int trial = 0; trial < 500; trial++) {
+        double x[3], y[3];
+        random_place(&chart, x);
+        memcpy(y, x, sizeof y);
+        assert_true(ref_chart_enter(&moved, y));
+        assert_true(ref_mls_at(&nodes, REF_MLS_PLANE_QUADRATIC, x, &shape));
+        assert_true(ref_mls_at(&others, REF_MLS_PLANE_QUADRATIC, y, &same));
+        assert_int_equal(shape.count, same.count);
+        for (int n = 0; n < shape.count; n++) {
+            int m = function_at(&chart, &others, &same, nodes.position[shape.node[n]]);
+            for (int k = 0; k < 6; k++)
+                assert_true(fabs(part_of(&shape, n, k, 0.05) - part_of(&same, m, k, 0.05)) < 1e-9);
+        }
+    }
+    ref_shape_free(&shape);
+    ref_shape_free(&same);
+    ref_nodes_free(&nodes);
+    ref_nodes_free(&others);
+    ref_quadtree_free(&tree);
+    ref_quadtree_free(&other);
+}

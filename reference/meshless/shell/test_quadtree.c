@@ -1,0 +1,99 @@
+/* Quadtrees of random charts, with rims and seams. */
+#include "test_charts.h"
+
+static unsigned seed = 1;
+
+/* What lies across a cell's side, at a share of it: its size, or 0 beyond a rim. */
+static int size_across(const RefQuadtree *tree, const RefCell *cell, int side, double share)
+{
+    double theta[2], edge[2];
+    ref_quadtree_cell(tree, cell, theta, edge);
+    int axis = side / 2;
+    theta[axis] += (side % 2 ? 0.5 : -0.5) * (edge[axis] + tree->unit[axis]);
+    theta[!axis] += (share - 0.5) * edge[!axis];
+    if (!ref_chart_enter(tree->chart, theta)) return 0;
+    return tree->cell[ref_quadtree_at(tree, theta)].size;
+}
+
+static void check_balance(const RefQuadtree *tree)
+{
+    for (long c = 0; c < tree->count; c++) {
+        const RefCell *cell = tree->cell + c;
+        for (int side = 0; cell->child < 0 && side < 4; side++)
+            for (double share = 1.0 / 16; share < 1; share += 1.0 / 8) {
+                int size = size_across(tree, cell, side, share);
+                assert_true(size == 0 || (size <= 2 * cell->size && cell->size <= 2 * size));
+            }
+    }
+}
+
+/* Terminal cells are where they say, and fill the rectangle. */
+static void check_cells(const RefQuadtree *tree)
+{
+    double area = 0, middle[2], edge[2];
+    const RefChart *chart = tree->chart;
+    long leaves = 0;
+    for (long c = 0; c < tree->count; c++) {
+        if (tree->cell[c].child >= 0) continue;
+        ref_quadtree_cell(tree, tree->cell + c, middle, edge);
+        assert_int_equal(ref_quadtree_at(tree, middle), c);
+        assert_true(edge[0] < 1.5 * edge[1] && edge[1] < 1.5 * edge[0]);
+        area += edge[0] * edge[1];
+        leaves++;
+    }
+    assert_int_equal(leaves, tree->leaves);
+    double whole = (chart->high[0] - chart->low[0]) * (chart->high[1] - chart->low[1]);
+    assert_true(fabs(area / whole - 1) < 1e-10);
+}
+
+TEST(cells_are_balanced_across_rims_and_seams)
+{
+    for (int trial = 0; trial < 16; trial++) {
+        Waves waves;
+        RefChart chart = random_chart(&seed, 0.7, trial & 1, trial & 2, &waves);
+        RefQuadtree tree = quadtree_of(&chart, 3, 300 + 20 * trial);
+        assert_true(fabs((double)tree.leaves / (300 + 20 * trial) - 1) < 0.1);
+        check_cells(&tree);
+        check_balance(&tree);
+        ref_quadtree_free(&tree);
+    }
+}
+
+/* Cells lie evenly on the surface where those of one size would not: L varies by more than ten. */
+TEST(cells_are_even_on_the_surface)
+{
+    for (int trial = 0; trial < 4; trial++) {
+        Waves waves;
+        RefChart chart = random_chart(&seed, 0.7, true, true, &waves);
+        RefQuadtree tree = quadtree_of(&chart, 2, 3000);
+        double sum[2] = {0}, squares[2] = {0};
+        for (long c = 0; c < tree.count; c++) {
+            double middle[2], edge[2];
+            if (tree.cell[c].child >= 0) continue;
+            ref_quadtree_cell(&tree, tree.cell + c, middle, edge);
+            double L = log(wavy_factor(&waves, middle)), both[2] = {L, L + log(edge[0])};
+            for (int k = 0; k < 2; k++) {
+                sum[k] += both[k];
+                squares[k] += both[k] * both[k];
+            }
+        }
+        for (int k = 0; k < 2; k++)
+            squares[k] = sqrt(squares[k] / tree.leaves - pow(sum[k] / tree.leaves, 2));
+        assert_true(squares[1] < 0.35 && squares[1] < 0.6 * squares[0]);
+        ref_quadtree_free(&tree);
+    }
+}
+
+TEST(charts_without_cells_are_refused)
+{
+    Waves waves;
+    RefQuadtree tree;
+    SmError error = {0};
+    RefChart chart = random_chart(&seed, 0, false, false, &waves);
+    assert_int_equal(ref_quadtree_build(&chart, 0, 1, &tree, &error), SM_USAGE);
+    assert_int_equal(ref_quadtree_build(&chart, 4000, 1, &tree, &error), SM_INPUT);
+    assert_int_equal(ref_quadtree_build(&chart, 1, 1e-9, &tree, &error), SM_INPUT);
+    assert_non_null(strstr(error.text, "fewer nodes"));
+    chart.high[1] = chart.low[1];
+    assert_int_equal(ref_quadtree_of(&chart, 1, 100, &tree, &error), SM_USAGE);
+}
