@@ -1,24 +1,15 @@
 #include "matrices.h"
 
-#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "../../../lib/csr.h"
 #include "../../../lib/vector.h"
+#include "pairs.h"
 
 /* Walls of a sliver that miss its volume by more than this are no use. */
 static const double MOST_OPEN = 0.2;
-
-/* Products of pairs of shape functions, I <= J: lists of J for every I. */
-typedef struct {
-    long count;   /* nodes */
-    long *start;  /* [count + 1] */
-    int *partner; /* rising */
-    double *mass;
-    double (*gradient)[9]; /* int phi_I,a phi_J,b at 3 a + b */
-} Pairs;
 
 /* One octant: the nodes whose covers reach into it, and their functions at its points. */
 typedef struct {
@@ -52,6 +43,34 @@ void ref_sparse_apply(const RefSparse *sparse, int width, const double *x, doubl
                 if (r != c) y[c * width + k] += sparse->value[e] * x[r * width + k];
             }
         }
+}
+
+/* The entry of a column in a row of the lower half; NULL: none. */
+static double *entry_at(const RefSparse *sparse, int column, int row)
+{
+    int low = sparse->start[column], high = sparse->start[column + 1];
+    while (low < high) {
+        int middle = low + (high - low) / 2;
+        if (sparse->row[middle] == row) return sparse->value + middle;
+        if (sparse->row[middle] < row)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return NULL;
+}
+
+bool ref_matrices_spring(RefMatrices *matrices, const RefRows *rows, const double *stiffness)
+{
+    for (long r = 0; r < rows->count; r++)
+        for (long e = rows->start[r]; e < rows->start[r + 1]; e++)
+            for (long f = rows->start[r]; f < rows->start[r + 1]; f++) {
+                if (rows->column[f] < rows->column[e]) continue;
+                double *value = entry_at(&matrices->stiffness, rows->column[e], rows->column[f]);
+                if (!value) return false;
+                *value += stiffness[r] * rows->value[e] * rows->value[f];
+            }
+    return true;
 }
 
 /* Whether the cover of node n reaches into the box, by more than rounding. */
@@ -111,51 +130,17 @@ static long walls_end(const RefOctants *tree, long o)
     return o + 1 < tree->count ? tree->octant[o + 1].first_wall : tree->walls;
 }
 
-/* Adds `count` rising numbers to a rising list of `*held`. */
-static int *merge(int *list, long *held, const int *number, int count)
-{
-    int *merged = sm_alloc((size_t)*held + (size_t)count, sizeof *merged);
-    long kept = 0, n = 0;
-    for (int b = 0; n < *held || b < count;) {
-        int next = n < *held ? list[n] : INT_MAX, other = b < count ? number[b] : INT_MAX;
-        merged[kept++] = next < other ? next : other;
-        n += next <= other;
-        b += other <= next;
-    }
-    free(list);
-    *held = kept;
-    return merged;
-}
-
 /* Nodes are partners where an octant knows both. */
-static void find_pairs(const RefOctants *tree, const RefNodes *nodes, Local *local, Pairs *pairs)
+static void find_pairs(const RefOctants *tree, const RefNodes *nodes, Local *local, RefPairs *pairs)
 {
-    size_t count = (size_t)nodes->count;
-    int **partner = sm_alloc(count, sizeof *partner);
-    long *held = sm_alloc(count, sizeof *held);
+    *pairs = ref_pairs_begin(nodes->count);
     for (long o = 0; o < tree->count; o++) {
         if (points_end(tree, o) == tree->octant[o].first) continue;
         find_nodes(tree, tree->octant + o, nodes, local);
-        for (int a = 0; a < local->count; a++) {
-            int i = local->node[a];
-            partner[i] = merge(partner[i], held + i, local->node + a, local->count - a);
-        }
+        ref_pairs_meet(pairs, local->count, local->node);
         forget_nodes(local);
     }
-    pairs->count = nodes->count;
-    pairs->start = sm_alloc(count + 1, sizeof *pairs->start);
-    for (size_t i = 0; i < count; i++) pairs->start[i + 1] = pairs->start[i] + held[i];
-    size_t all = (size_t)pairs->start[count];
-    pairs->partner = sm_alloc(all, sizeof *pairs->partner);
-    pairs->mass = sm_alloc(all, sizeof *pairs->mass);
-    pairs->gradient = sm_alloc(all, sizeof *pairs->gradient);
-    for (size_t i = 0; i < count; i++) {
-        if (held[i])
-            memcpy(pairs->partner + pairs->start[i], partner[i], (size_t)held[i] * sizeof(int));
-        free(partner[i]);
-    }
-    free(partner);
-    free(held);
+    ref_pairs_end(pairs);
 }
 
 /* The shape functions at the octant's points; false, and where, if one is not defined. */
@@ -299,7 +284,7 @@ static void products(long points, const double *i, const double *j, double *sum)
     memcpy(sum, all, sizeof all);
 }
 
-static void add_pairs(const Local *local, double *weighted, Pairs *pairs)
+static void add_pairs(const Local *local, double *weighted, RefPairs *pairs)
 {
     for (int a = 0; a < local->count; a++) {
         const double *row = local->value + 4 * a * local->points;
@@ -311,55 +296,29 @@ static void add_pairs(const Local *local, double *weighted, Pairs *pairs)
             while (pairs->partner[at] != local->node[b]) at++;
             products(local->points, weighted, local->value + 4 * b * local->points, sum);
             pairs->mass[at] += sum[0];
-            for (int k = 0; k < 9; k++) pairs->gradient[at][k] += sum[1 + k];
+            for (int k = 0; k < 9; k++) pairs->block[at][k] += sum[1 + k];
         }
     }
 }
 
-static RefSparse sparse_create(long columns, long entries)
-{
-    return (RefSparse){.columns = (int)columns,
-                       .start = sm_alloc((size_t)columns + 1, sizeof(int)),
-                       .row = sm_alloc((size_t)entries, sizeof(int)),
-                       .value = sm_alloc((size_t)entries, sizeof(double))};
-}
-
-static void fill_mass(const Pairs *pairs, double density, RefSparse *mass)
-{
-    long all = pairs->start[pairs->count];
-    *mass = sparse_create(pairs->count, all);
-    for (long i = 0; i <= pairs->count; i++) mass->start[i] = (int)pairs->start[i];
-    for (long e = 0; e < all; e++) {
-        mass->row[e] = pairs->partner[e];
-        mass->value[e] = density * pairs->mass[e];
-    }
-}
-
-/* K_IJ,ab = lambda G_ab + mu (G_ba + delta_ab tr G), G_ab = int phi_I,a phi_J,b. Column 3 I + a has
- * the rows 3 J + b: those of I itself from b = a on. */
-static void fill_stiffness(const Pairs *pairs, const RefMaterial *material, RefSparse *stiffness)
+/* K_IJ,ab = lambda G_ab + mu (G_ba + delta_ab tr G), G_ab = int phi_I,a phi_J,b, in G's place. */
+static void turn_stiff(const RefMaterial *material, RefPairs *pairs)
 {
     double mu = material->young / (2 * (1 + material->poisson));
     double lambda = 2 * mu * material->poisson / (1 - 2 * material->poisson);
-    *stiffness = sparse_create(3 * pairs->count, 9 * pairs->start[pairs->count] - 3 * pairs->count);
-    int at = 0;
-    for (long i = 0; i < pairs->count; i++)
-        for (int a = 0; a < 3; a++) {
-            stiffness->start[3 * i + a] = at;
-            for (long e = pairs->start[i]; e < pairs->start[i + 1]; e++) {
-                const double *G = pairs->gradient[e];
-                for (int b = pairs->partner[e] == i ? a : 0; b < 3; b++) {
-                    double value = lambda * G[3 * a + b] + mu * G[3 * b + a];
-                    if (a == b) value += mu * (G[0] + G[4] + G[8]);
-                    stiffness->row[at] = 3 * pairs->partner[e] + b;
-                    stiffness->value[at++] = value;
-                }
+    for (long e = 0; e < pairs->start[pairs->count]; e++) {
+        double G[9];
+        memcpy(G, pairs->block[e], sizeof G);
+        for (int a = 0; a < 3; a++)
+            for (int b = 0; b < 3; b++) {
+                double value = lambda * G[3 * a + b] + mu * G[3 * b + a];
+                if (a == b) value += mu * (G[0] + G[4] + G[8]);
+                pairs->block[e][3 * a + b] = value;
             }
-        }
-    stiffness->start[3 * pairs->count] = at;
+    }
 }
 
-static SmCode check_material(const RefMaterial *material, SmError *error)
+SmCode ref_material_check(const RefMaterial *material, SmError *error)
 {
     if (!(material->young > 0 && isfinite(material->young)))
         return sm_fail(error, SM_USAGE, "Young's modulus is %g; give one above 0", material->young);
@@ -388,14 +347,9 @@ static void local_free(Local *local)
     sm_free_all(local->node, local->number, local->weight, local->value, local->mean, local->wall);
 }
 
-static void pairs_free(Pairs *pairs)
-{
-    sm_free_all(pairs->start, pairs->partner, pairs->mass, pairs->gradient);
-}
-
 /* Every octant's share of the pairs' products. */
 static SmCode integrate(const RefOctants *tree, const RefNodes *nodes, RefBasis basis, Local *local,
-                        Pairs *pairs, SmError *error)
+                        RefPairs *pairs, SmError *error)
 {
     RefShape shape = ref_shape_create(nodes);
     double *weighted = NULL;
@@ -425,9 +379,9 @@ SmCode ref_matrices_build(const RefOctants *tree, const RefNodes *nodes, RefBasi
                           const RefMaterial *material, RefMatrices *matrices, SmError *error)
 {
     Local local;
-    Pairs pairs = {0};
+    RefPairs pairs;
     *matrices = (RefMatrices){0};
-    SmCode code = check_material(material, error);
+    SmCode code = ref_material_check(material, error);
     if (code != SM_OK) return code;
     local_create(nodes, &local);
     find_pairs(tree, nodes, &local, &pairs);
@@ -436,16 +390,13 @@ SmCode ref_matrices_build(const RefOctants *tree, const RefNodes *nodes, RefBasi
             code = sm_fail(error, SM_INPUT,
                            "the cover of the node at (%g, %g, %g) holds none of the body",
                            nodes->position[n][0], nodes->position[n][1], nodes->position[n][2]);
-    if (9 * pairs.start[pairs.count] > INT_MAX)
-        code = sm_fail(error, SM_INPUT,
-                       "%ld nodes with %ld pairs of covers are too many: give the body fewer nodes",
-                       nodes->count, pairs.start[pairs.count]);
+    if (code == SM_OK) code = ref_pairs_check(&pairs, error);
     if (code == SM_OK) code = integrate(tree, nodes, basis, &local, &pairs, error);
     if (code == SM_OK) {
-        fill_mass(&pairs, material->density, &matrices->mass);
-        fill_stiffness(&pairs, material, &matrices->stiffness);
+        turn_stiff(material, &pairs);
+        ref_pairs_matrices(&pairs, material->density, matrices);
     }
-    pairs_free(&pairs);
+    ref_pairs_free(&pairs);
     local_free(&local);
     return code;
 }

@@ -35,7 +35,16 @@ SmCode ref_matrices_build(const RefOctants *tree, const RefNodes *nodes, RefBasi
                           const RefMaterial *material, RefMatrices *matrices, SmError *error);
 void ref_matrices_free(RefMatrices *matrices);
 
+/* SM_USAGE, and a line that says which number is out of range. */
+SmCode ref_material_check(const RefMaterial *material, SmError *error);
+
 /* y = S x for `width` columns side by side: x and y are [columns][width]. */
 void ref_sparse_apply(const RefSparse *sparse, int width, const double *x, double *y);
+
+/* Adds springs to the stiffness, that of row r times stiffness[r]. The row's parameters have to be
+ * those of nodes that are partners, as nodes are that cover one point of the body. O(entries^2 of
+ * each row, times the logarithm of a column's). False, and the matrix half changed, where they are
+ * not. */
+bool ref_matrices_spring(RefMatrices *matrices, const RefRows *rows, const double *stiffness);
 
 #endif

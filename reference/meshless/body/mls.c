@@ -269,14 +269,20 @@ void ref_rows_free(RefRows *rows)
     *rows = (RefRows){0};
 }
 
-void ref_rows_displacement(RefRows *rows, const RefShape *shape, int axis)
+long ref_rows_begin(RefRows *rows, int entries)
 {
-    long at = rows->count ? rows->start[rows->count] : 0, end = at + shape->count;
+    long at = rows->count ? rows->start[rows->count] : 0, end = at + entries;
     rows->start = sm_realloc(rows->start, (size_t)rows->count + 2, sizeof *rows->start);
     rows->column = sm_realloc(rows->column, (size_t)end, sizeof *rows->column);
     rows->value = sm_realloc(rows->value, (size_t)end, sizeof *rows->value);
     rows->start[rows->count++] = at;
     rows->start[rows->count] = end;
+    return at;
+}
+
+void ref_rows_displacement(RefRows *rows, const RefShape *shape, int axis)
+{
+    long at = ref_rows_begin(rows, shape->count);
     for (int n = 0; n < shape->count; n++, at++) {
         rows->column[at] = 3 * shape->node[n] + axis;
         rows->value[at] = shape->value[n];

@@ -52,7 +52,11 @@ typedef struct {
     double *value; /* [start[count]] */
 } RefRows;
 
-/* Appends a row to `rows` (zeroed: empty): the displacement along an axis where the shape functions
+/* Appends a row of so many entries to `rows` (zeroed: empty); returns where they begin, for the
+ * caller to fill in. */
+long ref_rows_begin(RefRows *rows, int entries);
+
+/* Appends a row: the displacement along an axis where the shape functions
  * were taken. */
 void ref_rows_displacement(RefRows *rows, const RefShape *shape, int axis);
 void ref_rows_free(RefRows *rows);

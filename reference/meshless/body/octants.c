@@ -52,8 +52,7 @@ typedef struct {
     double volume;
 } Clip;
 
-/* Gauss points and weights of sum 1 on -1/2..1/2. */
-static void gauss_rule(int order, double *at, double *weight)
+void ref_gauss_rule(int order, double *at, double *weight)
 {
     gsl_integration_glfixed_table *table = gsl_integration_glfixed_table_alloc((size_t)order);
     for (int n = 0; n < order; n++)
@@ -214,7 +213,7 @@ static double clip_octant(const RefField *field, const RefOctantOptions *options
                           const double centre[3], double edge, RefOctants *tree)
 {
     Clip clip = {.field = field, .options = options, .tree = tree};
-    gauss_rule(options->gauss, clip.at, clip.weight);
+    ref_gauss_rule(options->gauss, clip.at, clip.weight);
     int parts = 1 << options->split;
     for (int n = 0; n < parts * parts * parts; n++) {
         double x[3] = {n % parts, n / parts % parts, n / (parts * parts)};
@@ -388,7 +387,7 @@ static void wall_faces(const RefField *field, const RefOctantOptions *options, l
     Face face = {.field = field, .options = options, .tree = tree};
     for (int n = 0; n < 2; n++) {
         face.order[n] = options->gauss + 1 + n < 4 ? options->gauss + 1 + n : 4;
-        gauss_rule(face.order[n], face.at[n], face.weight[n]);
+        ref_gauss_rule(face.order[n], face.at[n], face.weight[n]);
     }
     for (int side = 0; side < 6; side++) {
         face.axis = side / 2;

@@ -6,7 +6,7 @@
 
 enum { REF_MOST_SEAMS = 8 };
 
-/* A rectangle of the plane of parameters (theta1, theta2). Its sides are
+/* A rectangle of the plane of parameters (theta1, theta2) and the surface over it. Its sides are
  * rims of the surface, or seams, behind which the parameters go on in the rectangle but for a
  * constant. */
 typedef struct {
@@ -15,7 +15,8 @@ typedef struct {
     RefSeam seam[REF_MOST_SEAMS];
     /* L: lengths on the surface are L times those in the plane. */
     double (*factor)(const void *data, const double theta[2]);
-    const void *data; /* for factor() */
+    void (*place)(const void *data, const double theta[2], double x[3]);
+    const void *data; /* for both */
 } RefChart;
 
 /* Joins the rectangle's opposite sides along the axes that are given: the chart of a cylinder has

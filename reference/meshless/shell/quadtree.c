@@ -2,7 +2,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 void ref_quadtree_free(RefQuadtree *tree)
 {
@@ -182,17 +181,33 @@ SmCode ref_quadtree_of(const RefChart *chart, int across, long wanted, RefQuadtr
     return ref_quadtree_build(chart, across, found, tree, error);
 }
 
+/* A cell's node, and those on rims: in the middle of its sides there, and in the rectangle's
+ * corners. */
+static void add_nodes(const RefQuadtree *tree, const RefCell *cell, double eta, RefNodes *nodes)
+{
+    double middle[2], edge[2];
+    ref_quadtree_cell(tree, cell, middle, edge);
+    for (int n = 0; n < 9; n++) {
+        int step[2] = {n % 3 - 1, n / 3 - 1};
+        double *theta = nodes->position[nodes->count];
+        bool rim = true;
+        for (int d = 0; d < 2; d++) {
+            double beyond[2] = {middle[0], middle[1]};
+            beyond[d] += 0.5 * step[d] * (edge[d] + tree->unit[d]);
+            theta[d] = middle[d] + 0.5 * step[d] * edge[d];
+            rim = rim && (step[d] == 0 || !ref_chart_enter(tree->chart, beyond));
+        }
+        if (rim) nodes->reach[nodes->count++] = eta / 2 * fmax(edge[0], edge[1]);
+    }
+}
+
 void ref_quadtree_nodes(const RefQuadtree *tree, double eta, RefNodes *nodes)
 {
-    *nodes = (RefNodes){
-        .plane = true, .seams = tree->chart->seams, .seam = tree->chart->seam, .count = 0};
-    nodes->position = sm_alloc((size_t)tree->leaves, sizeof *nodes->position);
-    nodes->reach = sm_alloc((size_t)tree->leaves, sizeof *nodes->reach);
-    for (long c = 0; c < tree->count; c++) {
-        if (tree->cell[c].child >= 0) continue;
-        double edge[2];
-        ref_quadtree_cell(tree, tree->cell + c, nodes->position[nodes->count], edge);
-        nodes->reach[nodes->count++] = eta / 2 * fmax(edge[0], edge[1]);
-    }
+    size_t most = 9 * (size_t)tree->leaves;
+    *nodes = (RefNodes){.plane = true, .seams = tree->chart->seams, .seam = tree->chart->seam};
+    nodes->position = sm_alloc(most, sizeof *nodes->position);
+    nodes->reach = sm_alloc(most, sizeof *nodes->reach);
+    for (long c = 0; c < tree->count; c++)
+        if (tree->cell[c].child < 0) add_nodes(tree, tree->cell + c, eta, nodes);
     ref_nodes_bin(nodes);
 }

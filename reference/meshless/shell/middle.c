@@ -1,0 +1,93 @@
+#include "middle.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../../lib/vector.h"
+#include "../solve/solver.h"
+
+/* Sums of L^2 phi_I phi_J, of whole pairs alone: functions of one node meet in its diagonal. */
+static void add_squares(const RefSamples *samples, long p, double weight, RefPairs *pairs)
+{
+    for (long e = samples->start[p]; e < samples->start[p + 1]; e++)
+        for (long f = samples->start[p]; f < samples->start[p + 1]; f++) {
+            int i = samples->node[e], j = samples->node[f];
+            if (i > j) continue;
+            long low = pairs->start[i], high = pairs->start[i + 1] - 1;
+            while (low < high) {
+                long middle = (low + high) / 2;
+                if (pairs->partner[middle] < j)
+                    low = middle + 1;
+                else
+                    high = middle;
+            }
+            pairs->mass[low] += weight * samples->part[e][0] * samples->part[f][0];
+        }
+}
+
+SmCode ref_middle_fit(const RefChart *chart, const RefSamples *samples, long nodes, double (**X)[3],
+                      SmError *error)
+{
+    RefPairs pairs = ref_samples_pairs(samples, nodes);
+    double *right = sm_alloc(3 * (size_t)nodes, sizeof *right);
+    double *left = sm_alloc((size_t)nodes, sizeof *left);
+    RefMatrices sums;
+    RefSolver *solver;
+    for (long p = 0; p < samples->count; p++) {
+        double x[3], L = chart->factor(chart->data, samples->theta[p]);
+        double weight = L * L * samples->weight[p];
+        chart->place(chart->data, samples->theta[p], x);
+        add_squares(samples, p, weight, &pairs);
+        for (long e = samples->start[p]; e < samples->start[p + 1]; e++)
+            for (int d = 0; d < 3; d++)
+                right[d * nodes + samples->node[e]] += weight * samples->part[e][0] * x[d];
+    }
+    ref_pairs_matrices(&pairs, 1, &sums);
+    SmCode code =
+        ref_solver_create(&(RefMatrices){.stiffness = sums.mass}, 0, NULL, &solver, error);
+    if (code == SM_OK) {
+        *X = sm_alloc((size_t)nodes, sizeof **X);
+        for (int d = 0; d < 3; d++) {
+            ref_solver_solve(solver, right + d * nodes, NULL, left);
+            for (long n = 0; n < nodes; n++) (*X)[n][d] = left[n];
+        }
+        ref_solver_destroy(solver);
+    }
+    ref_matrices_free(&sums);
+    ref_pairs_free(&pairs);
+    sm_free_all(right, left);
+    return code;
+}
+
+/* What follows from x's derivatives. */
+static void complete(RefFrame *frame)
+{
+    double(*a)[3] = frame->tangent, up[2][3];
+    sm_cross(a[0], a[1], frame->normal);
+    frame->area = sqrt(sm_dot(frame->normal, frame->normal));
+    sm_normalize(frame->normal);
+    double squared = frame->area * frame->area;
+    frame->inverse[0] = sm_dot(a[1], a[1]) / squared;
+    frame->inverse[1] = sm_dot(a[0], a[0]) / squared;
+    frame->inverse[2] = -sm_dot(a[0], a[1]) / squared;
+    for (int d = 0; d < 3; d++) {
+        up[0][d] = frame->inverse[0] * a[0][d] + frame->inverse[2] * a[1][d];
+        up[1][d] = frame->inverse[2] * a[0][d] + frame->inverse[1] * a[1][d];
+    }
+    for (int m = 0; m < 3; m++)
+        for (int n = 0; n < 2; n++) frame->symbol[m][n] = sm_dot(up[n], frame->second[m]);
+}
+
+RefFrame ref_middle_at(const double (*X)[3], int count, const int *node, const double (*part)[6])
+{
+    RefFrame frame = {.area = 0};
+    for (int n = 0; n < count; n++)
+        for (int d = 0; d < 3; d++) {
+            double X_d = X[node[n]][d];
+            frame.x[d] += part[n][0] * X_d;
+            for (int k = 0; k < 2; k++) frame.tangent[k][d] += part[n][1 + k] * X_d;
+            for (int m = 0; m < 3; m++) frame.second[m][d] += part[n][3 + m] * X_d;
+        }
+    complete(&frame);
+    return frame;
+}

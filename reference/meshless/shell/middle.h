@@ -1,0 +1,28 @@
+/* middle.h - a shell's middle surface in rest, x = sum phi_I X_I: a combination of the functions
+ * that displacements are of, so that rigid motions of it are displacements, too. */
+#ifndef REF_MIDDLE_H
+#define REF_MIDDLE_H
+
+#include "samples.h"
+
+/* The surface at a point. Pairs of indices are in the order 11, 22, 12. */
+typedef struct {
+    double x[3];
+    double tangent[2][3]; /* a_k = x,k */
+    double second[3][3];  /* x,kl */
+    double normal[3];     /* a3, of unit length */
+    double area;          /* |a1 x a2| */
+    double inverse[3];    /* g^kl of the metric g_kl = a_k . a_l */
+    double symbol[3][2];  /* Christoffel's C^n_kl, of n = 1 and 2 */
+} RefFrame;
+
+/* X that fit the chart's surface by least squares over the samples, each with its area on the
+ * surface as the weight. One factorisation of [nodes]^2. The caller frees `X`, [nodes]. Errors:
+ * solver.h's. */
+SmCode ref_middle_fit(const RefChart *chart, const RefSamples *samples, long nodes, double (**X)[3],
+                      SmError *error);
+
+/* The surface where `count` functions are not zero: their nodes and parts as in RefSamples. */
+RefFrame ref_middle_at(const double (*X)[3], int count, const int *node, const double (*part)[6]);
+
+#endif

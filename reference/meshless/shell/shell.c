@@ -1,0 +1,67 @@
+#include "shell.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../../lib/vector.h"
+
+void ref_shell_free(RefShell *shell)
+{
+    ref_quadtree_free(&shell->tree);
+    ref_nodes_free(&shell->nodes);
+    ref_matrices_free(&shell->matrices);
+    free(shell->X);
+    *shell = (RefShell){.X = NULL};
+}
+
+SmCode ref_shell_build(const RefChart *chart, const RefShellOptions *options, RefShell *shell,
+                       SmError *error)
+{
+    RefSamples samples = {0};
+    *shell = (RefShell){.chart = *chart, .basis = options->basis};
+    SmCode code =
+        options->nodes
+            ? ref_quadtree_of(&shell->chart, options->across, options->nodes, &shell->tree, error)
+            : ref_quadtree_build(&shell->chart, options->across, INFINITY, &shell->tree, error);
+    if (code != SM_OK) return code;
+    ref_quadtree_nodes(&shell->tree, options->basis == REF_MLS_PLANE_LINEAR ? 4 : 6, &shell->nodes);
+    code = ref_samples_take(&shell->tree, &shell->nodes, options->basis, &samples, error);
+    if (code == SM_OK)
+        code = ref_middle_fit(&shell->chart, &samples, shell->nodes.count, &shell->X, error);
+    if (code == SM_OK)
+        code = ref_thin_build((const double(*)[3])shell->X, &samples, shell->nodes.count,
+                              options->thickness, &options->material, &shell->matrices, error);
+    ref_samples_free(&samples);
+    if (code != SM_OK) ref_shell_free(shell);
+    return code;
+}
+
+bool ref_shell_at(const RefShell *shell, const double theta[3], RefShape *shape, RefFrame *frame)
+{
+    if (!ref_mls_at(&shell->nodes, shell->basis, theta, shape)) return false;
+    double(*part)[6] = sm_alloc((size_t)shape->count, sizeof *part);
+    for (int n = 0; n < shape->count; n++) {
+        part[n][0] = shape->value[n];
+        for (int d = 0; d < 2; d++) part[n][1 + d] = shape->gradient[n][d];
+        for (int m = 0; m < 3; m++) part[n][3 + m] = shape->second[n][m];
+    }
+    *frame = ref_middle_at((const double(*)[3])shell->X, shape->count, shape->node,
+                           (const double(*)[6])part);
+    free(part);
+    return true;
+}
+
+void ref_rows_lean(RefRows *rows, const RefShape *shape, const RefFrame *frame,
+                   const double direction[3])
+{
+    const double *g = frame->inverse, (*a)[3] = frame->tangent;
+    double along[2] = {sm_dot(a[0], direction), sm_dot(a[1], direction)};
+    double up[2] = {g[0] * along[0] + g[2] * along[1], g[2] * along[0] + g[1] * along[1]};
+    long at = ref_rows_begin(rows, 3 * shape->count);
+    for (int n = 0; n < shape->count; n++)
+        for (int d = 0; d < 3; d++, at++) {
+            rows->column[at] = 3 * shape->node[n] + d;
+            rows->value[at] =
+                -frame->normal[d] * (shape->gradient[n][0] * up[0] + shape->gradient[n][1] * up[1]);
+        }
+}

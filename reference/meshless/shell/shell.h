@@ -1,0 +1,41 @@
+/* shell.h - a meshless thin shell: quadtree, nodes, covers, middle surface and matrices of a chart
+ * (meshless sections 4.2 and 5.2). */
+#ifndef REF_SHELL_H
+#define REF_SHELL_H
+
+#include "thin.h"
+
+typedef struct {
+    int across;     /* cells along the chart's shorter side before any is split */
+    long nodes;     /* wanted; 0: one in each of those cells */
+    RefBasis basis; /* of a plane: covers are 4 edges of their cells wide, of the quadratic one 6 */
+    double thickness;
+    RefMaterial material;
+} RefShellOptions;
+
+typedef struct {
+    RefChart chart;
+    RefQuadtree tree;
+    RefNodes nodes;
+    RefBasis basis;
+    double (*X)[3]; /* [nodes] the parameters of the middle surface, as displacements have them */
+    RefMatrices matrices;
+} RefShell;
+
+/* Builds a shell. The paper's covers are three edges wide, which leaves rims with too few
+ * nodes, and linear functions bend too stiffly. `shell` must not move in memory: nodes and tree
+ * know its chart. The caller frees. Errors: those of quadtree.h, samples.h, middle.h and thin.h. */
+SmCode ref_shell_build(const RefChart *chart, const RefShellOptions *options, RefShell *shell,
+                       SmError *error);
+void ref_shell_free(RefShell *shell);
+
+/* The shape functions and the middle surface at a point of the rectangle; false where functions are
+ * not defined. */
+bool ref_shell_at(const RefShell *shell, const double theta[3], RefShape *shape, RefFrame *frame);
+
+/* Appends a row: how far the normal leans along `direction` (of unit length) where functions and
+ * frame were taken: -(a3 . u,k) a^k . direction, summed over k. */
+void ref_rows_lean(RefRows *rows, const RefShape *shape, const RefFrame *frame,
+                   const double direction[3]);
+
+#endif
