@@ -46,9 +46,9 @@ void ref_quadtree_cell(const RefQuadtree *tree, const RefCell *cell, double midd
 
 /* A node in the middle of every terminal cell, its cover a square of `eta` times the cell's longer
  * edge; and, with the same cover, nodes on rims: in the middle of every cell's side that lies there
- * and in corners between two. Without these, clamping a plate of twenty by twenty nodes with linear
- * functions leaves three quarters of its deflection, as if its edges lay a cell farther in. The
- * caller frees; the chart has to live as long. */
+ * and in corners between two. Without these a plate that rows clamp is held
+ * as if its edges lay farther in: of twenty by twenty cells with linear functions it keeps 71% of
+ * its deflection, with them 94%. The caller frees; the chart has to live as long. */
 void ref_quadtree_nodes(const RefQuadtree *tree, double eta, RefNodes *nodes);
 
 #endif

@@ -1,5 +1,6 @@
 /* Square plates beside Kirchhoff's theory. */
 #include "../solve/modes.h"
+#include "test_charts.h"
 #include "test_shell.h"
 
 /* What a plate does, as shares of what theory says. */
@@ -7,12 +8,15 @@ typedef struct {
     double deflection, frequency;
 } Shares;
 
-/* The middle under a load per area, and the lowest frequency, of n by n cells. */
-static Shares plate(int n, RefBasis basis, Lean lean)
+static RefShellOptions thin(int across, RefBasis basis)
 {
-    RefChart chart = square_chart();
-    RefShellOptions options = {
-        .across = n, .basis = basis, .thickness = 0.01, .material = {1e7, 0.3, 10}};
+    return (RefShellOptions){
+        .across = across, .basis = basis, .thickness = 0.01, .material = {1e7, 0.3, 10}};
+}
+
+/* The middle under a load per area, and the lowest frequency. */
+static Shares plate(RefChart chart, RefShellOptions options, Lean lean)
+{
     double D = bending_of(&options), unit = sqrt(D / (10 * 0.01));
     RefShell shell;
     RefRows rows = {0};
@@ -25,8 +29,8 @@ static Shares plate(int n, RefBasis basis, Lean lean)
     assert_int_equal(ref_modes_find(&shell.matrices, &rows, 3, &modes, NULL), SM_OK);
     Shares shares = {moved * D / (lean == CLAMPED ? 0.0012653 : 0.0040624),
                      sqrt(modes.lambda[0]) / unit / (lean == CLAMPED ? 35.985 : 2 * M_PI * M_PI)};
-    print_message("%d x %d, m = %d: deflection %.4f, frequency %.4f of theory's\n", n, n,
-                  (int)basis, shares.deflection, shares.frequency);
+    print_message("%ld nodes, m = %d: deflection %.4f, frequency %.4f of theory's\n",
+                  shell.nodes.count, (int)shell.basis, shares.deflection, shares.frequency);
     ref_modes_free(&modes);
     ref_rows_free(&rows);
     ref_shell_free(&shell);
@@ -43,7 +47,8 @@ static double farthest(Shares shares)
 static void converges(Lean lean, RefBasis basis, double bound)
 {
     needs_solver();
-    double coarse = farthest(plate(10, basis, lean)), fine = farthest(plate(20, basis, lean));
+    double coarse = farthest(plate(square_chart(), thin(10, basis), lean));
+    double fine = farthest(plate(square_chart(), thin(20, basis), lean));
     assert_true(fine < bound && fine < coarse);
 }
 
@@ -66,4 +71,24 @@ TEST(clamped_linear)
 TEST(clamped_quadratic)
 {
     converges(CLAMPED, REF_MLS_PLANE_QUADRATIC, 0.01);
+}
+
+/* Cells that differ in size as those of a curved surface do, by four and more. */
+TEST(supported_on_uneven_cells)
+{
+    needs_solver();
+    unsigned seed = 7;
+    for (int trial = 0; trial < 4; trial++) {
+        Waves waves;
+        RefChart chart = random_chart(&seed, 0.35, false, false, &waves);
+        RefShellOptions options =
+            thin(4, trial % 2 ? REF_MLS_PLANE_LINEAR : REF_MLS_PLANE_QUADRATIC);
+        options.nodes = 500;
+        for (int d = 0; d < 2; d++) {
+            chart.low[d] = waves.low[d] = 0;
+            chart.high[d] = waves.side[d] = 1;
+        }
+        chart.place = place_flat;
+        assert_true(farthest(plate(chart, options, FREE_TO_LEAN)) < 0.02);
+    }
 }
