@@ -1,0 +1,62 @@
+#include "steps.h"
+
+#include <math.h>
+
+void ref_steps_free(RefSteps *steps)
+{
+    ref_solver_destroy(steps->solver);
+    sm_free_all(steps->u, steps->v, steps->force, steps->change, steps->right, steps->other);
+    *steps = (RefSteps){.solver = NULL};
+}
+
+/* What K is multiplied by in M + h C + h^2 K. */
+static double share_of_K(const RefDamping *damping, double h)
+{
+    return h * damping->stiffness_damping + h * h;
+}
+
+SmCode ref_steps_create(const RefMatrices *matrices, const RefDamping *damping, double h,
+                        const RefRows *rows, RefSteps *steps, SmError *error)
+{
+    double a = damping->mass_damping, b = damping->stiffness_damping;
+    *steps = (RefSteps){.matrices = matrices, .damping = *damping, .h = h};
+    if (!(h > 0 && isfinite(h)))
+        return sm_fail(error, SM_USAGE, "a step of %g s; give one above 0", h);
+    if (!(a >= 0 && b >= 0))
+        return sm_fail(error, SM_USAGE, "dampings of %g 1/s and %g s; give none below 0", a, b);
+    SmCode code = ref_solver_create(matrices, -(1 + h * a) / share_of_K(damping, h), rows,
+                                    &steps->solver, error);
+    if (code != SM_OK) return code;
+    double **vector[] = {&steps->u,      &steps->v,     &steps->force,
+                         &steps->change, &steps->right, &steps->other};
+    for (int n = 0; n < 6; n++)
+        *vector[n] = sm_alloc((size_t)matrices->stiffness.columns, sizeof(double));
+    return SM_OK;
+}
+
+void ref_steps_go(RefSteps *steps)
+{
+    double a = steps->damping.mass_damping, b = steps->damping.stiffness_damping, h = steps->h;
+    int size = steps->matrices->stiffness.columns;
+    double *right = steps->right, *other = steps->other, *change = steps->change;
+    for (int n = 0; n < size; n++) change[n] = steps->u[n] + (b + h) * steps->v[n];
+    ref_sparse_apply(&steps->matrices->stiffness, 1, change, right);
+    ref_sparse_apply(&steps->matrices->mass, 3, steps->v, other);
+    double times = h / share_of_K(&steps->damping, h);
+    for (int n = 0; n < size; n++) right[n] = times * (steps->force[n] - right[n] - a * other[n]);
+    ref_solver_solve(steps->solver, right, NULL, change);
+    for (int n = 0; n < size; n++) {
+        steps->v[n] += change[n];
+        steps->u[n] += h * steps->v[n];
+    }
+}
+
+double ref_steps_energy(RefSteps *steps)
+{
+    double sum = 0;
+    ref_sparse_apply(&steps->matrices->stiffness, 1, steps->u, steps->right);
+    ref_sparse_apply(&steps->matrices->mass, 3, steps->v, steps->other);
+    for (int n = 0; n < steps->matrices->stiffness.columns; n++)
+        sum += steps->u[n] * steps->right[n] + steps->v[n] * steps->other[n];
+    return sum / 2;
+}

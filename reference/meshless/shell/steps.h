@@ -1,0 +1,32 @@
+/* steps.h - implicit steps of a shell in time (meshless section 5.2, eqs. 24 and 31 without modes):
+ * M u'' + C u' + K u = F, C = a M + b K. Strains are linear: large turns need more. */
+#ifndef REF_STEPS_H
+#define REF_STEPS_H
+
+#include "../motion/motion.h"
+
+typedef struct {
+    const RefMatrices *matrices; /* the caller's */
+    RefDamping damping;
+    double h; /* the step */
+    RefSolver *solver;
+    double *u, *v;                  /* [3 nodes] displacements' parameters and velocities */
+    double *force;                  /* [3 nodes] the caller's to fill in; kept from step to step */
+    double *change, *right, *other; /* [3 nodes] of a step */
+} RefSteps;
+
+/* At rest. Factorises M + h C + h^2 K once for all steps, under `rows` (NULL: none), whose values
+ * keep their velocity. The caller frees. Errors: SM_USAGE, a step that is not above 0 or a negative
+ * damping; solver.h's. */
+SmCode ref_steps_create(const RefMatrices *matrices, const RefDamping *damping, double h,
+                        const RefRows *rows, RefSteps *steps, SmError *error);
+void ref_steps_free(RefSteps *steps);
+
+/* (M + h C + h^2 K) dv = h (F - K u - (C + h K) v), v += dv, u += h v. O(entries of the factors).
+ */
+void ref_steps_go(RefSteps *steps);
+
+/* v . M v / 2 + u . K u / 2, which never grows where nothing pulls. */
+double ref_steps_energy(RefSteps *steps);
+
+#endif
