@@ -45,6 +45,11 @@ SmCode ref_middle_fit(const RefChart *chart, const RefSamples *samples, long nod
     ref_pairs_matrices(&pairs, 1, &sums);
     SmCode code =
         ref_solver_create(&(RefMatrices){.stiffness = sums.mass}, 0, NULL, &solver, error);
+    if (code == SM_INPUT)
+        code = sm_fail(error, code,
+                       "the functions of the shell's %ld nodes depend on one another: take wider "
+                       "covers, 6 cells, or quadratic functions",
+                       nodes);
     if (code == SM_OK) {
         *X = sm_alloc((size_t)nodes, sizeof **X);
         for (int d = 0; d < 3; d++) {

@@ -18,7 +18,7 @@ typedef struct {
 
 /* X that fit the chart's surface by least squares over the samples, each with its area on the
  * surface as the weight. One factorisation of [nodes]^2. The caller frees `X`, [nodes]. Errors:
- * solver.h's. */
+ * SM_INPUT, functions that depend on one another; solver.h's. */
 SmCode ref_middle_fit(const RefChart *chart, const RefSamples *samples, long nodes, double (**X)[3],
                       SmError *error);
 

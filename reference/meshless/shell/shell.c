@@ -24,7 +24,8 @@ SmCode ref_shell_build(const RefChart *chart, const RefShellOptions *options, Re
             ? ref_quadtree_of(&shell->chart, options->across, options->nodes, &shell->tree, error)
             : ref_quadtree_build(&shell->chart, options->across, INFINITY, &shell->tree, error);
     if (code != SM_OK) return code;
-    ref_quadtree_nodes(&shell->tree, options->basis == REF_MLS_PLANE_LINEAR ? 4 : 6, &shell->nodes);
+    double eta = options->basis == REF_MLS_PLANE_LINEAR ? 4 : 6;
+    ref_quadtree_nodes(&shell->tree, options->eta > 0 ? options->eta : eta, &shell->nodes);
     code = ref_samples_take(&shell->tree, &shell->nodes, options->basis, &samples, error);
     if (code == SM_OK)
         code = ref_middle_fit(&shell->chart, &samples, shell->nodes.count, &shell->X, error);

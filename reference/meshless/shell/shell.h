@@ -8,7 +8,8 @@
 typedef struct {
     int across;     /* cells along the chart's shorter side before any is split */
     long nodes;     /* wanted; 0: one in each of those cells */
-    RefBasis basis; /* of a plane: covers are 4 edges of their cells wide, of the quadratic one 6 */
+    RefBasis basis; /* of a plane */
+    double eta;     /* covers' edges in those of their cells; 0: 4, of the quadratic basis 6 */
     double thickness;
     RefMaterial material;
 } RefShellOptions;
@@ -22,9 +23,12 @@ typedef struct {
     RefMatrices matrices;
 } RefShell;
 
-/* Builds a shell. The paper's covers are three edges wide, which leaves rims with too few
- * nodes, and linear functions bend too stiffly. `shell` must not move in memory: nodes and tree
- * know its chart. The caller frees. Errors: those of quadtree.h, samples.h, middle.h and thin.h. */
+/* Builds a shell. The paper's covers are three edges wide, which leaves rims with too few nodes.
+ * With 4 and 6 the weights' second derivatives jump where parts of uniform cells meet, which keeps
+ * integration good: a supported plate is 0.05% off with 4 and linear functions, 14% with 4.2. But
+ * linear functions of 4 add up to zero with alternating signs where uniform cells go around in even
+ * numbers; there 6 serves. `shell` must not move in memory: nodes and tree know its chart. The
+ * caller frees. Errors: those of quadtree.h, samples.h, middle.h and thin.h. */
 SmCode ref_shell_build(const RefChart *chart, const RefShellOptions *options, RefShell *shell,
                        SmError *error);
 void ref_shell_free(RefShell *shell);

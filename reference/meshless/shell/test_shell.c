@@ -146,6 +146,25 @@ TEST(moving_the_seam_changes_no_frequency)
     for (int k = 6; k < 12; k++) assert_true(fabs(lambda[1][k] / lambda[0][k] - 1) < 1e-7);
 }
 
+/* Linear functions four cells wide around a cylinder of even cells. */
+TEST(covers_that_alternate)
+{
+    needs_solver();
+    const double R = 2;
+    RefChart chart = cylinder_chart(&R, 2 * M_PI * R, M_PI);
+    RefShell shell;
+    SmError error = {0};
+    RefShellOptions options = {
+        .across = 4, .basis = REF_MLS_PLANE_LINEAR, .thickness = thickness, .material = material};
+    ref_chart_wrap(&chart, true, false);
+    assert_int_equal(ref_shell_build(&chart, &options, &shell, &error), SM_INPUT);
+    assert_non_null(strstr(error.text, "wider covers"));
+    options.eta = 6;
+    shell_of(&chart, &options, &shell);
+    for (int kind = 0; kind < 6; kind++) assert_true(forces_of_rigid(&shell, kind) < 1e-10);
+    ref_shell_free(&shell);
+}
+
 static void place_nowhere(const void *data __attribute__((unused)),
                           const double theta[2] __attribute__((unused)), double x[3])
 {
