@@ -20,8 +20,8 @@ static void check_balance(const RefQuadtree *tree)
     for (long c = 0; c < tree->count; c++) {
         const RefCell *cell = tree->cell + c;
         for (int side = 0; cell->child < 0 && side < 4; side++)
-            for (double share = 1.0 / 16; share < 1; share += 1.0 / 8) {
-                int size = size_across(tree, cell, side, share);
+            for (int part = 1; part < 16; part += 2) {
+                int size = size_across(tree, cell, side, part / 16.0);
                 assert_true(size == 0 || (size <= 2 * cell->size && cell->size <= 2 * size));
             }
     }
