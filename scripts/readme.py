@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Measures README.md's tables anew, each by the command that stands above it, <!-- table: COMMAND -->.
+"""Measures the tables of the documents anew, each by the command that stands above it, <!-- table: COMMAND -->.
 
 usage: readme.py [WORD...]     only tables whose command has one of these words
 
@@ -12,6 +12,7 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+DOCUMENTS = ("README.md", "bench/README.md")
 TABLE = re.compile(r"(<!-- table: ([^\n]*) -->\n)(.*?)(<!-- end of table -->)", re.DOTALL)
 
 
@@ -34,11 +35,12 @@ def main(words):
             return table[0]
         return mark + made.stdout + end
 
-    file = ROOT / "README.md"
-    text = TABLE.sub(measured, file.read_text())
-    draft = file.with_suffix(".tmp")
-    draft.write_text(text)
-    os.replace(draft, file)
+    for name in DOCUMENTS:
+        file = ROOT / name
+        text = TABLE.sub(measured, file.read_text())
+        draft = file.with_suffix(".tmp")
+        draft.write_text(text)
+        os.replace(draft, file)
     return 1 if stays else 0
 
 

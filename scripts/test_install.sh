@@ -10,8 +10,8 @@ prefix=$(mktemp -d)
 trap 'rm -rf -- "$prefix"' EXIT
 build=${1:?BUILD_FOLDER missing}
 cmake --install "$build" --prefix "$prefix" >"$prefix/log" || { cat "$prefix/log"; exit 1; }
-export_line=$(sed -n 's/^ *export PKG_CONFIG_PATH=/export PKG_CONFIG_PATH=/p' "$here/../README.md")
-[ -n "$export_line" ] || { echo "no export PKG_CONFIG_PATH in README.md"; exit 1; }
+export_line=$(sed -n 's/^ *export PKG_CONFIG_PATH=/export PKG_CONFIG_PATH=/p' "$here/../lib/README.md")
+[ -n "$export_line" ] || { echo "no export PKG_CONFIG_PATH in lib/README.md"; exit 1; }
 eval "${export_line//PREFIX/\$prefix}"
 for script in check_step.py render.py plots.py plot_calibration.py plot_slice.py plot_sweep.py report/main.py report/live.js; do
     cmp -s "$here/$script" "$prefix/share/shapebench/$script" ||
@@ -37,7 +37,7 @@ check() {
 }
 
 cc=${CC:-cc}
-sed -n '/^#include <shapebench.h>/,/^```/{/^```/!p}' "$here/../README.md" >"$prefix/program.c"
+sed -n '/^#include <shapebench.h>/,/^```/{/^```/!p}' "$here/../lib/README.md" >"$prefix/program.c"
 "$cc" -std=c99 -Wall -Wextra -Werror -pedantic -fsyntax-only -x c "$prefix/include/shapebench.h"
 read -ra flags < <(pkg-config --cflags --libs shapebench)
 "$cc" -std=c11 -Wall -Wextra -o "$prefix/program" "$prefix/program.c" "${flags[@]}"

@@ -149,6 +149,7 @@ if(NOT SHAPEBENCH_SANITIZE AND NOT SHAPEBENCH_CORE)
   foreach(plot sweep slice calibration)
     add_script_test(plot_${plot} test_plot_${plot}.sh ${CMAKE_BINARY_DIR})
   endforeach()
+  add_script_test(documents test_documents.py $<TARGET_FILE:shapebench>)
   add_script_test(columns test_columns.sh $<TARGET_FILE:shapebench>)
   add_script_test(optional test_optional.sh)
   add_script_test(setup test_setup.sh)
@@ -164,7 +165,7 @@ endif()
 
 # These start first, of any instruction set and precision, so that none is alone in the end.
 set(long "bench_(calibrate|regress|kernels|sweep_run|points|gap|threads|command|experiment)|meshless_engine"
-  "fastlsm_(fastlsm|fracture)|octree_octree|lib_shape|render|brute_force|damage|writers|scenes|report|install|page")
+  "fastlsm_(fastlsm|fracture)|octree_octree|lib_shape|render|brute_force|damage|writers|scenes|report|install|documents|page")
 list(JOIN long "|" long)
 get_property(tests DIRECTORY PROPERTY TESTS)
 foreach(test ${tests})

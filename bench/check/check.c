@@ -459,10 +459,9 @@ void bench_check_text(const BenchDeviation *found, size_t size, char *text)
              found->plain ? "not kept by plain weighting, off by" : "kept to",
              found->momentum_error);
     if (found->drift.steps > 0)
-        sm_append(
-            text, size,
-            ", left alone for %ld steps it drifts by %.1g cells and %.1g radians a step in each",
-            found->drift.steps, found->drift.linear, found->drift.angular);
+        sm_append(text, size,
+                  ", over %ld free steps it drifts by %.1g cells and %.1g radians a step",
+                  found->drift.steps, found->drift.linear, found->drift.angular);
     if (found->damping_tolerance > 0)
         sm_append(text, size, ", damping within %.1g of the largest velocity (allowed %.0e)",
                   found->damping_error, found->damping_tolerance);
@@ -471,7 +470,9 @@ void bench_check_text(const BenchDeviation *found, size_t size, char *text)
                   found->contact_nodes, found->contact_all, found->contacts - found->contacts_wrong,
                   found->contacts);
     if (found->obstacles)
-        sm_append(text, size, ", %ld pushed out of obstacles as brute force has it", found->pushed);
+        sm_append(text, size,
+                  ", %ld particles stopped by obstacles, all where brute force has them",
+                  found->pushed);
     if (found->tied)
         sm_append(text, size,
                   "; %ld particle%s of regions whose rotation is not unique left out (within %.1g)",

@@ -512,7 +512,7 @@ bool bench_drift_verdict(const BenchDrift *drift, const char *precision, size_t 
     double most = strcmp(precision, "single") == 0 ? 5e-9 : 1e-14;
     if (drift->linear <= most && drift->angular <= most) return true;
     snprintf(reason, size,
-             "left alone for %ld steps it drifts by %.3g cells and %.3g radians a step in each; at "
+             "over %ld free steps it drifts by %.3g cells and %.3g radians a step; at "
              "most %g allowed",
              drift->steps, drift->linear, drift->angular, most);
     return false;

@@ -397,7 +397,7 @@ TEST(wrong_obstacles_are_invalid)
         assert_true(found.obstacles && found.pushed > plate.count / 10);
         assert_true(found.pushed < plate.count);
         bench_check_text(&found, sizeof text, text);
-        assert_non_null(strstr(text, " pushed out of obstacles"));
+        assert_non_null(strstr(text, " stopped by obstacles"));
         SmEngineType wrong = *types[t];
         wrong.bound = wrong_bound;
         honest = types[t];

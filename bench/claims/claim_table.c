@@ -89,9 +89,11 @@ static void write_people(FILE *file, BenchFormat format, const BenchFinding *fin
     if (format == BENCH_AS_LATEX) return;
     fprintf(
         file,
-        "Of %d, %s. Brackets hold 95%% confidence intervals, of several values half the widest; "
-        "undecided: the value is outside of what is wanted and its interval is not; ? marks a "
-        "value that the paper misprints, * one at second hand.\n\n",
+        "Of %d, %s. Brackets hold 95%% confidence intervals, of several values half of the widest "
+        "one. Undecided: the value does not pass the test, but a part of its interval does. ? "
+        "marks "
+        "a value that the paper misprints, * one that we know from another source than the paper."
+        "\n\n",
         count, text);
     write_notes(file, findings, count, format == BENCH_AS_MARKDOWN);
 }

@@ -109,7 +109,8 @@ static const char help[] =
     "precision and threads that it says.\v"
     "A program of another revision is kept in build/regress, for next time.\n" BENCH_EXIT_CODES
     " Of regress alone: 5 slower; 6 no baseline for a scene, or a baseline of another machine; 7 "
-    "nothing could be judged: all too noisy, too few samples, or --by cycles where they cannot be "
+    "no "
+    "verdict on any time: all too noisy, too few samples, or --by cycles where they cannot be "
     "read.";
 
 /* What one comparison holds. */

@@ -104,7 +104,7 @@ void bench_regression_summary(const BenchRegression *found, size_t size, char *l
     else if (found->count == had[BENCH_NO_BASELINE])
         snprintf(line, size, "no baseline: nothing could be compared");
     else if (had[BENCH_SAME] + had[BENCH_FASTER] == 0)
-        snprintf(line, size, "nothing could be judged, of %d %s", found->count, of);
+        snprintf(line, size, "no verdict on any of %d %s", found->count, of);
     else
         snprintf(line, size, "not slower in %d of %d %s", had[BENCH_SAME] + had[BENCH_FASTER],
                  found->count, of);
@@ -114,8 +114,9 @@ void bench_regression_summary(const BenchRegression *found, size_t size, char *l
     if (had[BENCH_TOO_FEW])
         snprintf(remedy, sizeof remedy, "at least --rounds %d",
                  bench_comparisons_rounds(found->list, found->count, found->params));
-    sm_append(line, size, "; %d could not be judged (%d too noisy, %d too few samples): %s%s",
-              unsure, had[BENCH_TOO_NOISY], had[BENCH_TOO_FEW], remedy,
+    if (unsure < found->count) sm_append(line, size, "; no verdict on %d", unsure);
+    sm_append(line, size, " (%d too noisy, %d with too few samples): take %s%s",
+              had[BENCH_TOO_NOISY], had[BENCH_TOO_FEW], remedy,
               had[BENCH_TOO_NOISY] ? ", or a quieter machine" : "");
 }
 

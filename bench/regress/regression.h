@@ -45,7 +45,7 @@ void bench_regression_environment(BenchRegression *found);
  *   [{"scene", "time", "verdict", "ratio", ..., "old": {"ms", "samples": [s], "outliers": [places],
  *   "cycles", ...}, "new"}], "remarks", "environments"}. What is not known is null. By cycles "ms"
  *   is null, and samples are cycles.
- * junit: a test case for each time; slower is a failure, INVALID an error, what could not be judged
+ * junit: a test case for each time; slower is a failure, INVALID an error, what has no verdict
  *   skipped.
  * gbench, of times alone: Google Benchmark's JSON, every process a repetition, "old/SCENE/TIME" and
  * "new/SCENE/TIME"; its compare.py takes it as `compare.py filters FILE old new`. cpu_time is the

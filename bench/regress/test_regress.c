@@ -96,7 +96,7 @@ TEST(usage)
     expect("shapebench regress --baseline a --rounds 0", 2, "--rounds: '0'");
     expect("shapebench regress a.h5", 2, "what is 'a.h5'?");
     expect("shapebench regress --help", 0, "6 no baseline");
-    expect("shapebench regress --help | tr '\\n' ' '", 0, "7 nothing could be judged");
+    expect("shapebench regress --help | tr '\\n' ' '", 0, "7 no verdict on any time");
 }
 
 TEST(files_that_are_no_baseline)

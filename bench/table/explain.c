@@ -27,7 +27,8 @@ static void print_lost(FILE *file, const BenchRow *row, const char *before)
                 "again when they are done",
                 before, row->lost_percent, row->load);
     else if (row->lost_percent >= 5)
-        fprintf(file, "%s%.0f%% lost to other programs, left out", before, row->lost_percent);
+        fprintf(file, "%sother programs took %.0f%% of the time, which is not counted", before,
+                row->lost_percent);
 }
 
 static void brief_row(FILE *file, const BenchRow *row, int width)
@@ -58,9 +59,10 @@ void bench_explain_briefly(FILE *file, const BenchRow *rows, int count)
     int width = 0;
     for (int r = 0; r < count; r++)
         if ((int)strlen(rows[r].scene) > width) width = (int)strlen(rows[r].scene);
-    fputs("On the state that was timed: goals off in cells; left alone, drift of the velocity in "
-          "cells a\nstep, each step; then times' quartiles (more: --explain)\n",
-          file);
+    fputs(
+        "On the state that was timed: goals off in cells; drift of the velocity, in cells a step, "
+        "over free\nsteps; then times' quartiles (more: --explain)\n",
+        file);
     for (int r = 0; r < count; r++) {
         brief_row(file, &rows[r], width);
         bench_change_left(file, "    ", rows[r].change.left);
@@ -109,6 +111,16 @@ static void print_stages(FILE *file, const BenchRow *row)
     fprintf(file, "; %s ns a particle and step\n", number);
 }
 
+/* What timing stages costs; a negative share is noise. */
+static void print_instruments(FILE *file, double percent)
+{
+    if (percent >= 0.05)
+        fprintf(file, "timing the stages makes a step %.1f%% longer; the total is without it;\n",
+                percent);
+    else
+        fputs("timing the stages costs nothing that can be measured;\n", file);
+}
+
 static void print_check(FILE *file, const BenchRow *row)
 {
     fprintf(file, "  %s, %s in %s precision: %s: ", row->scene, row->engine, row->precision,
@@ -123,12 +135,10 @@ static void print_check(FILE *file, const BenchRow *row)
         return;
     }
     if (row->lost_percent >= 5) fputs("; ", file);
-    fprintf(
-        file,
-        "%s;\n    quartiles %.4g to %.4g ms, %d repeats of %d step%s; stage clocks cost %.1f%%, "
-        "which the total is without (below 0: noise);\n",
-        row->found, row->total_low_ms, row->total_high_ms, row->repeats, row->steps,
-        row->steps == 1 ? "" : "s", row->instruments_percent);
+    fprintf(file, "%s;\n    quartiles %.4g to %.4g ms, %d repeats of %d step%s; ", row->found,
+            row->total_low_ms, row->total_high_ms, row->repeats, row->steps,
+            row->steps == 1 ? "" : "s");
+    print_instruments(file, row->instruments_percent);
     print_counts(file, row);
     print_stages(file, row);
     if (bench_row_of_elastic(row)) return;

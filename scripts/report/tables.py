@@ -23,7 +23,7 @@ class Table:
 def explain_marks(statuses):
     """What the marks of these values mean."""
     words = {"?": "a question mark is behind a value that is damaged in our text of the paper, or misprinted",
-             "*": "a star is behind a value that we have only at second hand"}
+             "*": "a star is behind a value that we know from another source than the paper"}
     marks = sorted({STATUS_MARKS[status] for status in statuses if status in STATUS_MARKS}, reverse=True)
     text = "; ".join(words[mark] for mark in marks)
     return f" {text[0].upper()}{text[1:]}." if text else ""
@@ -170,7 +170,7 @@ def everything(source):
 ENVIRONMENT = [("cpu", "processor"), ("cores", "cores"), ("threads", "threads"), ("l1_bytes", "L1 bytes"),
                ("l2_bytes", "L2 bytes"), ("l3_bytes", "L3 bytes"), ("governor", "governor"), ("kernel", "system"),
                ("hostname", "host"), ("compiler", "compiler"), ("flags", "flags"), ("libraries", "libraries"),
-               ("version", "version"), ("git_commit", "commit"), ("git_dirty", "changed after it"), ("utc", "begun"),
+               ("version", "version"), ("git_commit", "commit"), ("git_dirty", "uncommitted changes"), ("utc", "begun"),
                ("command", "command")]
 
 
