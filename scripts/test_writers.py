@@ -105,7 +105,6 @@ class Trial:
             with open(path, "rb") as file:
                 data = file.read()
             return WHOLE[ending] in data[-64:] and data.count(b"\n") > 3
-        stored.check.cache_clear()
         stored.check(path)
         with open(path, "rb") as file:
             return stored.checksum_fits(path) and file.read(4) == b"\x89HDF"

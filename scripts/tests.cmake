@@ -139,7 +139,7 @@ if(SHAPEBENCH_FUZZ)
 elseif(has_cmocka)
   add_each(test add_unit_test)
 endif()
-# A test that is a program of scripts/, skipped where something that it needs is absent.
+# A test that is a program, by its place from scripts/; skipped where something that it needs is absent.
 function(add_script_test name script)
   add_test(NAME ${name} COMMAND ${CMAKE_SOURCE_DIR}/scripts/${script} ${ARGN})
   set_tests_properties(${name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 900)
@@ -160,6 +160,7 @@ if(NOT SHAPEBENCH_SANITIZE AND NOT SHAPEBENCH_CORE)
   endforeach()
   add_script_test(by_isa by_isa.py $<TARGET_FILE:shapebench> hashes penguin hand-sampled)
   add_script_test(report report/test_report.py $<TARGET_FILE:shapebench>)
+  add_script_test(python ../lib/python/test_shapebench.py $<TARGET_FILE:shapebench> $<TARGET_FILE:shapebench_shared>)
   add_script_test(page view/run_tests.py $<TARGET_FILE:shapebench>)
 endif()
 

@@ -6,28 +6,12 @@ import math
 import os
 import re
 
-import h5py
 import numpy as np
 
 import stored
-from stored import Unusable
+from stored import Unusable, attributes, plain
 
 CLAIM_KINDS = ("method", "machine", "by construction")
-
-
-def plain(value):
-    """An attribute as Python has it: text, number, or array."""
-    if isinstance(value, bytes):
-        return value.decode("utf-8", "replace")
-    if isinstance(value, np.ndarray):
-        return value
-    return value.item() if hasattr(value, "item") else value
-
-
-def attributes(node):
-    """By number: a signal in h5py's own loop over names, which HDF5 calls back, ends as a SystemError."""
-    names = [h5py.h5a.open(node.id, index=n).name.decode() for n in range(h5py.h5a.get_num_attrs(node.id))]
-    return {name: plain(node.attrs[name]) for name in names}
 
 
 class Source:
