@@ -39,6 +39,7 @@ int main(void) { return cmocka_run_group_tests((const struct CMUnitTest *)0, 0, 
   "No unit tests: install libcmocka-dev"
   INCLUDES ${CMOCKA_INCLUDE_DIRS} LIBRARIES ${CMOCKA_LINK_LIBRARIES})
 
+set(sources_of_files import|importer|mesh_files|mesh_text|polygon|recentre|reply|child|confine)
 if(SHAPEBENCH_CORE)
   pkg_check_modules(GSL QUIET gsl)
   optional_library(gsl [[
@@ -48,7 +49,7 @@ int main(void) { return gsl_linalg_SV_decomp_jacobi((gsl_matrix *)0, 0, 0); }]]
   if(NOT has_gsl)
     set(has_cmocka OFF)
   endif()
-  set(sources_left_out modes|solver|import|importer|mesh_files|mesh_text|polygon|recentre|reply|child|confine)
+  set(sources_left_out modes|solver|${sources_of_files})
   if(CMAKE_SIZEOF_VOID_P EQUAL 4) # the library's header has 64-bit numbers of particles
     string(APPEND sources_left_out |public/[a-z_]*)
   endif()

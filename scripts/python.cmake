@@ -6,3 +6,12 @@ install(DIRECTORY lib/python/shapebench DESTINATION ${python_folder} FILES_MATCH
 install(FILES lib/public/shapebench.h DESTINATION ${python_module})
 install(CODE "file(RELATIVE_PATH library /${python_module} \"/${CMAKE_INSTALL_LIBDIR}/$<TARGET_SONAME_FILE_NAME:shapebench_shared>\")
 file(CREATE_LINK \"\${library}\" \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${python_module}/libshapebench.so\" SYMBOLIC)")
+
+# The wheel has the core alone, which needs nothing that is not in it; so no compiler and no packages.
+add_library(shapebench_wheel_library SHARED ${core_objects} lib/mesh/import_absent.c lib/public/references_absent.c)
+target_link_libraries(shapebench_wheel_library PRIVATE shapebench_flags)
+set_target_properties(shapebench_wheel_library PROPERTIES OUTPUT_NAME shapebench LIBRARY_OUTPUT_DIRECTORY wheel
+  BUILD_RPATH "$ORIGIN") # where the wheel has OpenMP's library
+show_header_alone(shapebench_wheel_library)
+add_custom_target(wheel COMMAND ${CMAKE_SOURCE_DIR}/scripts/wheel.py $<TARGET_FILE:shapebench_wheel_library>
+  ${CMAKE_BINARY_DIR} DEPENDS shapebench_wheel_library VERBATIM)

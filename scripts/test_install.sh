@@ -112,6 +112,10 @@ sb.sb_voxels_free(block)
 PROGRAM
 if command -v python3 >"$prefix/log"; then
     check "Python" python3 "$prefix/program.py" "$prefix/lib/libshapebench.so" "$(pkg-config --modversion shapebench)"
+    if /usr/bin/python3 -c 'import numpy' 2>"$prefix/log"; then
+        engines=$(cd "$prefix" && env -u LD_LIBRARY_PATH /usr/bin/python3 -c 'import shapebench; print(*shapebench.engines())')
+        [[ $engines == "fastlsm octree brute"* ]] || { echo "the module's engines: $engines"; exit 1; }
+    fi
 else
     echo "no python3: not tested through ctypes"
 fi

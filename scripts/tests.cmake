@@ -160,7 +160,11 @@ if(NOT SHAPEBENCH_SANITIZE AND NOT SHAPEBENCH_CORE)
   endforeach()
   add_script_test(by_isa by_isa.py $<TARGET_FILE:shapebench> hashes penguin hand-sampled)
   add_script_test(report report/test_report.py $<TARGET_FILE:shapebench>)
-  add_script_test(python ../lib/python/test_shapebench.py $<TARGET_FILE:shapebench> $<TARGET_FILE:shapebench_shared>)
+  add_script_test(python_module ../lib/python/test_shapebench.py
+    $<TARGET_FILE:shapebench> $<TARGET_FILE:shapebench_shared>)
+  add_script_test(python_results ../lib/python/test_results.py $<TARGET_FILE:shapebench>)
+  add_script_test(python_wheel ../lib/python/test_wheel.py
+    $<TARGET_FILE:shapebench_wheel_library> $<TARGET_FILE:shapebench_shared>)
   add_script_test(page view/run_tests.py $<TARGET_FILE:shapebench>)
 endif()
 
