@@ -8,7 +8,10 @@ install(CODE "file(RELATIVE_PATH library /${python_module} \"/${CMAKE_INSTALL_LI
 file(CREATE_LINK \"\${library}\" \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${python_module}/libshapebench.so\" SYMBOLIC)")
 
 # The wheel has the core alone, which needs nothing that is not in it; so no compiler and no packages.
-add_library(shapebench_wheel_library SHARED ${core_objects} lib/mesh/import_absent.c lib/public/references_absent.c)
+if(NOT SHAPEBENCH_CORE)
+  set(absent lib/mesh/import_absent.c lib/public/references_absent.c)
+endif()
+add_library(shapebench_wheel_library SHARED ${core_objects} ${absent})
 target_link_libraries(shapebench_wheel_library PRIVATE shapebench_flags)
 set_target_properties(shapebench_wheel_library PROPERTIES OUTPUT_NAME shapebench LIBRARY_OUTPUT_DIRECTORY wheel
   BUILD_RPATH "$ORIGIN") # where the wheel has OpenMP's library

@@ -165,6 +165,7 @@ if(NOT SHAPEBENCH_SANITIZE AND NOT SHAPEBENCH_CORE)
   add_script_test(python_results ../lib/python/test_results.py $<TARGET_FILE:shapebench>)
   add_script_test(python_wheel ../lib/python/test_wheel.py
     $<TARGET_FILE:shapebench_wheel_library> $<TARGET_FILE:shapebench_shared>)
+  add_script_test(python_blender ../lib/python/blender/test_blender.py $<TARGET_FILE:shapebench_wheel_library>)
   add_script_test(page view/run_tests.py $<TARGET_FILE:shapebench>)
 endif()
 

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""The Python module as a wheel: what `pip install` puts in place without a compiler, with the library within.
+"""The Python module as a wheel: what `pip install` puts in place without a compiler, with the library within; and the
+same in the Blender add-on's zip.
 
 usage: wheel.py LIBRARY FOLDER      LIBRARY needs only libc and what is packed with it (OpenMP's library)"""
 import base64
@@ -35,20 +36,24 @@ def needed(library):
     return {name: pathlib.Path(place) for name, place in found.items() if not OF_THE_SYSTEM.match(pathlib.Path(name).name)}
 
 
-def contents(library, tag):
-    """What goes in, by its name there."""
-    header = (MODULE / "shapebench.h").read_text(encoding="utf-8")
-    version = ".".join(re.findall(r"#define SHAPEBENCH_VERSION_(?:MAJOR|MINOR|PATCH) (\d+)", header))
+def module(library):
+    """The module's files, by their names."""
     files = {f"shapebench/{path.name}": path.read_bytes() for path in sorted(MODULE.iterdir()) if path.is_file()}
     files["shapebench/libshapebench.so"] = library.read_bytes()
     for name, place in needed(library).items():
         files[f"shapebench/{name}"] = place.read_bytes()
+    return files
+
+
+def about_wheel(version, tag):
+    """What a wheel says of itself."""
+    files = {}
     about = f"shapebench-{version}.dist-info"
     readme = (ROOT / "lib" / "python" / "README.md").read_text(encoding="utf-8")
     files[f"{about}/METADATA"] = METADATA.format(version=version, readme=readme).encode()
     files[f"{about}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: shapebench\nRoot-Is-Purelib: false\nTag: {tag}\n".encode()
     files[f"{about}/LICENSE"] = (ROOT / "LICENSE").read_bytes()
-    return version, files
+    return files
 
 
 def record(name, data):
@@ -56,19 +61,27 @@ def record(name, data):
     return f"{name},sha256={digest},{len(data)}\n"
 
 
+def pack(archive, files):
+    with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as packed:
+        for name, data in files.items():
+            entry = zipfile.ZipInfo(name)  # of 1980, so that the same files make the same archive
+            entry.compress_type, entry.external_attr = zipfile.ZIP_DEFLATED, 0o644 << 16
+            packed.writestr(entry, data)
+    print(archive)
+
+
 def main():
     library, folder = map(pathlib.Path, sys.argv[1:])
     tag = "py3-none-" + sysconfig.get_platform().replace("-", "_").replace(".", "_")
-    version, files = contents(library, tag)
+    header = (MODULE / "shapebench.h").read_text(encoding="utf-8")
+    version = ".".join(re.findall(r"#define SHAPEBENCH_VERSION_(?:MAJOR|MINOR|PATCH) (\d+)", header))
+    own = module(library)
+    files = own | about_wheel(version, tag)
     name = f"shapebench-{version}.dist-info/RECORD"
     files[name] = ("".join(record(*item) for item in files.items()) + f"{name},,\n").encode()
-    wheel = folder / f"shapebench-{version}-{tag}.whl"
-    with zipfile.ZipFile(wheel, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, data in files.items():
-            entry = zipfile.ZipInfo(name)  # of 1980, so that the same files make the same wheel
-            entry.compress_type, entry.external_attr = zipfile.ZIP_DEFLATED, 0o644 << 16
-            archive.writestr(entry, data)
-    print(wheel)
+    pack(folder / f"shapebench-{version}-{tag}.whl", files)
+    addon = {"__init__.py": (ROOT / "lib" / "python" / "blender" / "__init__.py").read_bytes()} | own
+    pack(folder / f"shapebench-{version}-blender.zip", {f"shapebench_blender/{name}": data for name, data in addon.items()})
 
 
 if __name__ == "__main__":

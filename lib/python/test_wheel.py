@@ -38,7 +38,7 @@ class Wheel(unittest.TestCase):
         cls.folder = pathlib.Path(folder.name)
         made = subprocess.run([HERE.parent.parent / "scripts" / "wheel.py", CORE, folder.name], capture_output=True,
                               text=True, check=True)
-        cls.wheel = pathlib.Path(made.stdout.strip())
+        cls.wheel = pathlib.Path(made.stdout.splitlines()[0])
         venv.create(cls.folder / "env", system_site_packages=True, with_pip=True)
         cls.python(cls, "-m", "pip", "install", "--no-index", "--quiet", "--disable-pip-version-check", cls.wheel)
 
