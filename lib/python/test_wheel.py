@@ -53,7 +53,7 @@ class Wheel(unittest.TestCase):
 
     def test_the_readmes_example_draws(self):
         example = re.search(r"```python\n(.*?)```", (HERE / "README.md").read_text(encoding="utf-8"), re.DOTALL)[1]
-        self.python("-c", example + "assert min(heights) < heights[-1] < 0.1 and sb.__file__.startswith(__import__('sys').prefix)")
+        self.python("-c", example + "assert min(heights) < heights[-1] < 0.1")
         self.assertGreater((self.folder / "sag.png").stat().st_size, 5000)
 
     def test_its_library_is_within_and_has_the_same_bits(self):

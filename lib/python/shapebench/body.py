@@ -1,5 +1,7 @@
 """Bodies, and what holds, stops, cuts and refines them."""
 
+from __future__ import annotations
+
 import ctypes
 import math
 import threading
@@ -16,6 +18,7 @@ from .geometry import Made, Mesh, Voxels
 Doubles = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 Ints = NDArray[np.int32]
+Choice = Union[str, int, None]  # of an enum: a member's name, without what all begin with, or its number
 
 CHOICES = {"engine": "SB_FASTLSM", "precision": "SB_SINGLE", "summation": "SB_SUM_FAST", "polar": "SB_POLAR_FAST",
            "layout": "SB_LAYOUT_AUTO", "kind": "SB_CELLS_ALL", "mass_rule": "SB_MASS_MATERIAL",
@@ -64,10 +67,10 @@ class OctreeParams:
     width_edges: Optional[float] = None  # both 0: one edge
     summation_nodes: Optional[float] = None  # wanted per region on average: edges are searched for; 0: not
     widths: Sequence[LocalWidth] = ()  # 16 at most; the last that holds a node's centre counts
-    mass_rule: Union[str, int, None] = None  # "material": a node weighs its material; "volume": as its cell were it full
-    symmetry: Union[str, int, None] = None  # of regions: "union", "intersection", "none" (with goals "adjoint")
-    weighting: Union[str, int, None] = None  # "conserving" keeps momentum; "plain": octree eqs. 6 and 7 as printed
-    goals: Union[str, int, None] = None  # "gather" or "adjoint"
+    mass_rule: Choice = None  # "material": a node weighs its material; "volume": as its cell were it full
+    symmetry: Choice = None  # of regions: "union", "intersection", "none" (with goals "adjoint")
+    weighting: Choice = None  # "conserving" keeps momentum; "plain": octree eqs. 6 and 7 as printed
+    goals: Choice = None  # "gather" or "adjoint"
     yield_: Optional[float] = None  # plasticity (octree eq. 9) from this strain on
     creep: Optional[float] = None  # rate, 0 (elastic) to 1 / h per second
     most: Optional[float] = None  # largest plastic strain; 0: 1
@@ -159,8 +162,28 @@ def _mass(mass: ArrayLike, voxels: Voxels) -> Doubles:
 class Body(Made):
     """A deformable body of `voxels`, at rest, that may carry the mesh `surface`; a "meshless" body is made of it, closed.
 
-    What is None is the library's default: FastLSM in single precision, w 2, h 0.01 s, no gravity, one instance, all
-    cores. O(particles), up to a few microseconds each.
+    What is None is the library's default, which is said here. O(particles), up to a few microseconds each.
+
+        engine             "fastlsm"; "octree", "brute", "meshless"
+        precision          "single" (twice as fast); "double"
+        w                  2; half-width of FastLSM's regions in cells, 1 to 31: larger is stiffer
+        threads            0: OpenMP's number; any number gives the same bits
+        h                  0.01; time step, s
+        gravity            (0, 0, 0)
+        damping            0; of regions' motion relative to rigid, 0 to 1 (fastlsm eq. 14)
+        damping_every      1; n: in every n-th step
+        cuttable           False; cut() and blades work. The octree's bodies always are; FastLSM's cost some memory more
+        strain_limit       0: none; a link of FastLSM longer than this times its rest length breaks, above 1
+        summation          "fast"; "bars", "naive": fastlsm section 3, prefix sums along bars only, and none
+        polar              "fast"; "jacobi": how rotations are found
+        layout             "auto"; "lists", "blocks": of FastLSM, same results, to rounding
+        collide_self       False; the body with itself
+        collide_instances  False; instances with each other
+        collide_friction   0; share of tangential velocity lost on contact, 0 to 1
+        instances          1; bodies of the same voxels, which share memory
+        pose               at rest; [instances, 3, 4]: from rest to where each starts
+        mass               1 each, of the octree 1 a cell; [particles of the voxels], kg
+        octree, meshless   what one of these engines asks beyond that
 
     Use it with `with`, or close() it, to have its memory back at once; else it goes with the last reference.
 
@@ -170,28 +193,14 @@ class Body(Made):
 
     _free = "sb_body_free"
 
-    def __init__(self, voxels: Voxels, surface: Optional[Mesh] = None, *,
-                 engine: Union[str, int, None] = None,
-                 precision: Union[str, int, None] = None,  # "single" (twice as fast) or "double"
-                 w: Optional[int] = None,  # half-width of FastLSM's regions in cells, 1 to 31: larger is stiffer
-                 threads: Optional[int] = None,  # 0: OpenMP's number; any number gives the same bits
-                 h: Optional[float] = None,  # time step, s
-                 gravity: Optional[ArrayLike] = None,
-                 damping: Optional[float] = None,  # of regions' motion relative to rigid, 0 to 1 (fastlsm eq. 14)
-                 damping_every: Optional[int] = None,  # n: in every n-th step
-                 cuttable: Optional[bool] = None,  # cut() and blades work; the octree's bodies always are
-                 strain_limit: Optional[float] = None,  # FastLSM: links longer than this times at rest break; 0: never
-                 summation: Union[str, int, None] = None,  # "fast", "bars", "naive" (fastlsm section 3)
-                 polar: Union[str, int, None] = None,  # "fast", "jacobi"
-                 layout: Union[str, int, None] = None,  # "auto", "lists", "blocks": same results, to rounding
-                 collide_self: Optional[bool] = None,
-                 collide_instances: Optional[bool] = None,  # with each other
-                 collide_friction: Optional[float] = None,  # share of tangential velocity lost on contact, 0 to 1
-                 instances: Optional[int] = None,  # bodies of the same voxels, which share memory
-                 pose: Optional[ArrayLike] = None,  # [instances, 3, 4] or [instances, 12]: from rest to where each starts
-                 mass: Optional[ArrayLike] = None,  # of the voxels' particles, kg; None: 1 each; of the octree, 1 a cell
-                 octree: Optional[OctreeParams] = None,
-                 meshless: Optional[MeshlessParams] = None) -> None:
+    def __init__(self, voxels: Voxels, surface: Optional[Mesh] = None, *, engine: Choice = None, precision: Choice = None,
+                 w: Optional[int] = None, threads: Optional[int] = None, h: Optional[float] = None,
+                 gravity: Optional[ArrayLike] = None, damping: Optional[float] = None, damping_every: Optional[int] = None,
+                 cuttable: Optional[bool] = None, strain_limit: Optional[float] = None, summation: Choice = None,
+                 polar: Choice = None, layout: Choice = None, collide_self: Optional[bool] = None,
+                 collide_instances: Optional[bool] = None, collide_friction: Optional[float] = None,
+                 instances: Optional[int] = None, pose: Optional[ArrayLike] = None, mass: Optional[ArrayLike] = None,
+                 octree: Optional[OctreeParams] = None, meshless: Optional[MeshlessParams] = None) -> None:
         given = [("engine", engine), ("precision", precision), ("w", w), ("threads", threads), ("h", h),
                  ("gravity", gravity), ("damping", damping), ("damping_every", damping_every), ("cuttable", cuttable),
                  ("strain_limit", strain_limit), ("summation", summation), ("polar", polar), ("layout", layout),

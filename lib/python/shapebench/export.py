@@ -5,6 +5,8 @@ others read.
     python3 -m shapebench.export penguin.vtkhdf penguin.pc2   # beside the OBJ of its first frame
 """
 
+from __future__ import annotations
+
 import argparse
 import os
 import struct

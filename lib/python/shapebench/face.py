@@ -1,6 +1,8 @@
 """The library's C face, declared by its own header: shapebench.h lies beside this file, and its enums, structs and
 functions are read from there. Nothing is declared twice; a test holds what is read to a C compiler's."""
 
+from __future__ import annotations
+
 import ctypes
 import functools
 import operator

@@ -1,5 +1,7 @@
 """Meshes and voxels: what bodies are made of."""
 
+from __future__ import annotations
+
 import ctypes
 import os
 import weakref

@@ -5,6 +5,8 @@
     rows.frame().sort_values("total_ms")         # where pandas is installed
 """
 
+from __future__ import annotations
+
 import os
 from dataclasses import dataclass
 from types import TracebackType
