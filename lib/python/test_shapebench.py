@@ -206,6 +206,7 @@ class Refusals(unittest.TestCase):
             self.refused(ValueError, "does not fit 64 bits", body.step, 1 << 64)
             self.refused(TypeError, "whole number", body.step, 1.5)
             self.refused(TypeError, "whole numbers", body.hold, [0.5])
+            self.refused(TypeError, "of bool: whole numbers", body.hold, body.rest()[:, 0] < 0)
             self.refused(ValueError, "do not fit int64", body.hold, np.array([1 << 63], np.uint64))
         self.refused(ValueError, "do not fit int32", sb.Mesh, np.eye(3), [[0, 1, 1 << 32]])
         self.refused(ValueError, "does not fit 32 bits", beam, w=(1 << 32) + 2)

@@ -194,6 +194,10 @@ class AddOn(unittest.TestCase):
             bpy.ops.object.shapebench_bake()
         self.assertEqual(self.scene.frame_current, 7)
 
+    def test_the_version_is_the_modules(self):
+        import shapebench_blender
+        self.assertEqual(".".join(map(str, shapebench_blender.bl_info["version"])), shapebench_blender.sb.__version__)
+
     def test_the_panel_shows_what_there_is(self):
         """Blender draws no panel without a window: a stand-in for its layout notes what is asked of it."""
         obj, shown = self.beam(), []

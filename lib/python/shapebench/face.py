@@ -151,7 +151,7 @@ def array(value: ArrayLike, kind: Any, name: str, *shape: Optional[int]) -> NDAr
     any length, also none at all: (9, 3) and (27,) both fit (None, 3)."""
     given = np.asarray(value)
     wanted = np.dtype(kind)
-    if given.dtype.kind not in ("biu" if wanted.kind in "iu" else "biuf") and given.size:
+    if given.dtype.kind not in ("iu" if wanted.kind in "iu" else "biuf") and given.size:
         raise TypeError(f"'{name}' is of {given.dtype}: {'whole ' if wanted.kind in 'iu' else ''}numbers are wanted")
     if wanted.kind in "iu" and given.size and given.dtype != wanted:
         fits = np.iinfo(wanted)
