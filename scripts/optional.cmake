@@ -49,7 +49,7 @@ int main(void) { return gsl_linalg_SV_decomp_jacobi((gsl_matrix *)0, 0, 0); }]]
   if(NOT has_gsl)
     set(has_cmocka OFF)
   endif()
-  set(sources_left_out modes|solver|${sources_of_files})
+  set(sources_left_out elastic_absent|dense_plain|modes|solver|${sources_of_files})
   if(CMAKE_SIZEOF_VOID_P EQUAL 4) # the library's header has 64-bit numbers of particles
     string(APPEND sources_left_out |public/[a-z_]*)
   endif()
@@ -95,4 +95,4 @@ int main(void) { return seccomp_load(seccomp_init(SCMP_ACT_ALLOW)); }]]
 if(has_seccomp)
   string(APPEND pc_needs ", libseccomp")
 endif()
-string(APPEND sources_left_out |import_absent|references_absent)
+string(APPEND sources_left_out |import_absent|references_absent|elastic_absent|dense_plain)

@@ -1,5 +1,4 @@
-/* The engine: a field from the mesh's points, a body, its modes, their motion, and its particles.
- */
+/* The engine: a body, the motion of its modes, and its particles. */
 #include "engine.h"
 
 #include <assert.h>
@@ -9,9 +8,10 @@
 
 #include "../../lib/engine/boundary.h"
 #include "../../lib/vector.h"
-#include "motion/grip.h"
-#include "motion/skin.h"
+#include "elastic.h"
+#include "motion/grip_modes.h"
 #include "solve/least_squares.h"
+#include "stored.h"
 
 enum { MOST_POINTS = 128 };
 
@@ -21,6 +21,7 @@ struct SmEngine {
     double h, mass;    /* of a particle */
     double pose[3][4]; /* rest to initial position: a translation */
     bool points;       /* particles are the field's points, not the lattice's */
+    bool stored;       /* modes are those that were stored, whatever holds the body */
     RefElastic elastic;
     long *place; /* [all] where a particle is in the skin */
     double (*rest)[3], (*x)[3],
@@ -80,90 +81,28 @@ static SmCode check(const SmVoxels *voxels, const SmEngineParams *params, SmErro
     return SM_OK;
 }
 
-/* The fewest points, of `least` and its doubles, that tell the mesh's sides apart; 0: too many. */
-static long enough_points(const SmMesh *mesh, long least)
-{
-    for (long wanted = least; wanted <= REF_MESHLESS_MOST_POINTS; wanted *= 2) {
-        RefPoints points;
-        if (ref_points_of_mesh(mesh, wanted, &points, NULL) != SM_OK) return wanted;
-        bool enough = ref_mpu_dense(&points);
-        ref_points_free(&points);
-        if (enough) return wanted;
-    }
-    return 0;
-}
-
-SmCode ref_meshless_field(const RefMeshlessOptions *options, RefMpu *mpu, SmError *error)
-{
-    RefPoints points;
-    SmError why;
-    long enough =
-        enough_points(options->mesh, options->points > 0 ? options->points : REF_MESHLESS_POINTS);
-    long wanted = options->points > 0 ? options->points : enough > 0 ? enough : REF_MESHLESS_POINTS;
-    SmCode code = ref_points_of_mesh(options->mesh, wanted, &points, error);
-    if (code != SM_OK) return code;
-    code = ref_mpu_build(&points, NULL, mpu, &why);
-    if (code == SM_OK) return code;
-    if (enough > wanted)
-        return sm_fail(
-            error, code,
-            "%ld points on its surface are too few to tell the sides of a body this thin "
-            "apart: take %ld (run --points, or points in a scene's group meshless)",
-            wanted, enough);
-    return sm_fail(error, code, "%s", why.text);
-}
-
-/* The particles that the field's points are. */
-static void take_points(const RefPoints *points, SmEngine *engine)
-{
-    size_t count = (size_t)points->count;
-    engine->count = engine->all = points->count;
-    engine->rest = sm_alloc(count, sizeof *engine->rest);
-    memcpy(engine->rest, points->position, count * sizeof *engine->rest);
-}
-
-/* Octants, nodes, covers and matrices of the points' field, whose covers reach all particles. */
+/* Octants, nodes, matrices and modes. */
 static SmCode make_body(const RefMeshlessOptions *options, SmEngine *engine, SmError *error)
 {
     RefElastic *elastic = &engine->elastic;
-    const RefMpu *given = engine->points ? NULL : options->given;
-    RefMpu mpu = {0};
-    double start = sm_now();
-    SmCode code = given ? SM_OK : ref_meshless_field(options, &mpu, error);
-    if (code != SM_OK) return code;
-    double built = sm_now();
-    if (engine->points) take_points(&mpu.points, engine);
-    RefField field = ref_mpu_field(given ? given : &mpu);
-    RefBodyOptions body = {.nodes = options->nodes > 0 ? options->nodes : REF_MESHLESS_NODES,
-                           .within = engine->points ? 0.01 : 0,
-                           .coarser = options->uniform ? 0 : 1,
-                           .basis = REF_MLS_LINEAR,
-                           .material = options->material};
-    code = ref_body_build(&field, &body, engine->count, CONST(engine->rest), &elastic->body, error);
     elastic->material = options->material;
-    elastic->field_seconds = built - start;
-    elastic->matrix_seconds = sm_now() - built;
-    ref_mpu_free(&mpu);
-    return code;
+    if (engine->stored) {
+        ref_stored_body(options->stored, &options->material, &elastic->body, &elastic->modes);
+        return SM_OK;
+    }
+    SmCode code = ref_elastic_body(options, &engine->count, &engine->rest, elastic, error);
+    if (engine->points) engine->all = engine->count;
+    return code == SM_OK ? ref_elastic_modes(options, elastic, error) : code;
 }
 
-static SmCode make_motion(const SmEngineParams *params, SmEngine *engine, SmError *error)
+static void make_motion(const SmEngineParams *params, SmEngine *engine)
 {
-    const RefMeshlessOptions *options = params->meshless;
-    double start = sm_now();
-    long most = 3 * engine->elastic.body.nodes.count / 2;
-    int wanted = options->modes > 0 ? options->modes : (int)fmin(REF_MESHLESS_MODES, (double)most);
+    RefMotion *motion = &engine->elastic.motion;
     RefDamping damping = {params->damping / (1 - params->damping) / params->h,
-                          options->stiffness_damping};
-    SmCode code =
-        ref_modes_find(&engine->elastic.body.matrices, NULL, wanted, &engine->elastic.modes, error);
-    if (code != SM_OK) return code;
-    engine->elastic.mode_seconds = sm_now() - start;
-    ref_motion_create(&engine->elastic.body, &engine->elastic.modes, &damping,
-                      &engine->elastic.motion);
-    ref_motion_gravity(&engine->elastic.body, params->gravity, &engine->elastic.motion);
-    ref_motion_pose(&engine->elastic.motion);
-    return SM_OK;
+                          params->meshless->stiffness_damping};
+    ref_motion_create(&engine->elastic.body, &engine->elastic.modes, &damping, motion);
+    ref_motion_gravity(&engine->elastic.body, params->gravity, motion);
+    ref_motion_pose(motion);
 }
 
 /* Where the particles are, and how fast they came there. */
@@ -220,17 +159,18 @@ static SmCode create(const SmVoxels *voxels, const SmEngineParams *params, bool 
     if (code != SM_OK) return code;
     SmEngine *engine = sm_alloc(1, sizeof *engine);
     engine->points = points;
+    engine->stored = !points && params->meshless->stored;
     engine->h = params->h;
     sm_engine_pose(params, 0, engine->pose);
     if (!points)
         take_lattice(voxels, params->meshless->given ? &params->meshless->given->points : NULL,
                      engine);
     code = make_body(params->meshless, engine, error);
-    if (code == SM_OK) code = make_motion(params, engine, error);
     if (code != SM_OK) {
         meshless_destroy(engine);
         return code;
     }
+    make_motion(params, engine);
     make_particles(engine);
     engine->mass = params->meshless->material.density *
                    ref_octants_volume(&engine->elastic.body.octants) / (double)engine->count;
@@ -360,6 +300,25 @@ static long nodes_beside(const RefBody *body, long count, const double (*x)[3])
     return beside;
 }
 
+/* Where the particles of a handle rest that nodes cover, or if there are none all of them: a stored
+ * body's covers reach the particles that it was made for. Returns how many. */
+static long covered_points(const SmEngine *engine, const SmHandle *handle, double (*x)[3])
+{
+    const RefBody *body = &engine->elastic.body;
+    RefShape shape = ref_shape_create(&body->nodes);
+    long count = 0;
+    for (long k = 0; k < handle->count; k++) {
+        const double *rest = engine->rest[handle->particle[k]];
+        bool covered = !engine->stored || ref_mls_at(&body->nodes, body->basis, rest, &shape);
+        if (covered) memcpy(x[count++], rest, sizeof *x);
+    }
+    ref_shape_free(&shape);
+    if (count > 0) return count;
+    for (; count < handle->count; count++)
+        memcpy(x[count], engine->rest[handle->particle[count]], sizeof *x);
+    return count;
+}
+
 /* Points of every handle, a little more than half as many as nodes are beside it: with one a node
  * the body could bend no nearer to the handle than covers reach, and with a third of them it bends
  * between them. A cantilever's sag says so: -4%, and +4% (test_engine.c). */
@@ -374,11 +333,10 @@ static void choose_grips(SmEngine *engine)
         const SmHandle *handle = engine->handles.handle + n;
         if (handle->count == 0) continue;
         double(*x)[3] = sm_alloc((size_t)handle->count, sizeof *x);
-        for (long k = 0; k < handle->count; k++)
-            memcpy(x[k], engine->rest[handle->particle[k]], sizeof x[k]);
-        double wanted = fmax(0.55 * (double)nodes_beside(body, handle->count, CONST(x)), 4);
-        engine->grip[engine->grips++] = ref_grip_choose(
-            handle->count, CONST(x), 0.5 * body->octants.cell, (int)fmin(wanted, (double)room));
+        long count = covered_points(engine, handle, x);
+        double wanted = fmax(0.55 * (double)nodes_beside(body, count, CONST(x)), 4);
+        engine->grip[engine->grips++] = ref_grip_choose(count, CONST(x), 0.5 * body->octants.cell,
+                                                        (int)fmin(wanted, (double)room));
         free(x);
     }
 }
@@ -417,7 +375,7 @@ static void bind_points(SmEngine *engine)
     }
 }
 
-/* Other modes for other handles; the motion goes on. */
+/* Other modes for other handles, unless they are stored; the motion goes on. */
 static void bind(SmEngine *engine)
 {
     RefElastic *elastic = &engine->elastic;
@@ -425,8 +383,9 @@ static void bind(SmEngine *engine)
     RefModes held = {0};
     release(engine);
     if (engine->handles.count > 0 && !engine->points) choose_grips(engine);
-    bool found = engine->grips > 0 && ref_grip_modes(&elastic->body, engine->grips, engine->grip,
-                                                     elastic->modes.count, &held, NULL) == SM_OK;
+    bool found = engine->grips > 0 && !engine->stored &&
+                 ref_grip_modes(&elastic->body, engine->grips, engine->grip, elastic->modes.count,
+                                &held, NULL) == SM_OK;
     ref_motion_create(&elastic->body, found ? &held : &elastic->modes, &before.damping,
                       &elastic->motion);
     memcpy(elastic->motion.force, before.force,
@@ -508,6 +467,14 @@ const SmEngineType ref_meshless_engine = {
     .count = meshless_count,
     .region = meshless_region,
 };
+
+void ref_meshless_go_on(SmEngine *engine, SmEngine *from)
+{
+    ref_motion_take(&engine->elastic.body, &from->elastic.motion, engine->h,
+                    &engine->elastic.motion);
+    place_particles(engine, false);
+    memcpy(engine->v, from->v, (size_t)engine->all * sizeof *engine->v);
+}
 
 /* ---- frames, as Table 1 times them: the field's points are carried, each handle binds one */
 

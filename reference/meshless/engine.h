@@ -9,7 +9,8 @@
  * A handle grips the body at some of its particles (grip.h), a little more than one for every
  * second node there: these move with it to 1e-6, and those between them as the body does, by a few
  * thousandths of its sag. Handles that are other ones than before cost a search for modes, as
- * create() does: bodies that are held have others than those that are free. A cantilever of 1,000
+ * create() does: bodies that are held have others than those that are free. A stored body keeps its
+ * modes, whatever holds it. A cantilever of 1,000
  * nodes and 64 modes sags within 2% of theory; one held by a slab of two layers of nodes,
  * within 3.5%. */
 #ifndef REF_MESHLESS_ENGINE_H
@@ -28,14 +29,17 @@ enum {
     REF_MESHLESS_MODES = 64
 };
 
+typedef struct RefStored RefStored; /* stored.h */
+
 struct RefMeshlessOptions {
     const SmMesh *mesh;  /* the body's closed surface, read by create() only */
     const RefMpu *given; /* NULL, or the field of points that were given: they are carried, too */
-    long points;         /* on the mesh's surface, of which the field is made without `given`; 0:
-                          * REF_MESHLESS_POINTS, of thin bodies more, to REF_MESHLESS_MOST_POINTS */
-    long nodes;          /* wanted; 0: REF_MESHLESS_NODES */
-    bool uniform;        /* octants are all of one size; false: inside they may be twice as large */
-    int modes;           /* 0: REF_MESHLESS_MODES, or half of what there is */
+    const RefStored *stored; /* NULL, or the body and its modes (stored.h): none are sought then */
+    long points;  /* on the mesh's surface, of which the field is made without `given`; 0:
+                   * REF_MESHLESS_POINTS, of thin bodies more, to REF_MESHLESS_MOST_POINTS */
+    long nodes;   /* wanted; 0: REF_MESHLESS_NODES */
+    bool uniform; /* octants are all of one size; false: inside they may be twice as large */
+    int modes;    /* 0: REF_MESHLESS_MODES, or half of what there is */
     RefMaterial material;     /* mesh units, kg, s */
     double stiffness_damping; /* b of Rayleigh's a + b lambda, s; a loses the share params->damping
                                * of the speed in a step */
@@ -72,5 +76,9 @@ typedef struct RefElastic {
 } RefElastic;
 
 RefElastic *ref_meshless_elastic(SmEngine *engine);
+
+/* Takes over where the same body is, and how fast it goes, from another engine of the first type,
+ * as well as set() cannot: turns of any size go on. */
+void ref_meshless_go_on(SmEngine *engine, SmEngine *from);
 
 #endif

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "covers.h"
+
 enum { LEAST_NODES = 8, MOST_ATTEMPTS = 16 };
 
 void ref_body_free(RefBody *body)

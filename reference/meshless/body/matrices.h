@@ -21,6 +21,7 @@ typedef struct {
 typedef struct {
     RefSparse mass;      /* of the nodes: int rho phi_I phi_J; the same along every axis */
     RefSparse stiffness; /* of the parameters 3 I + d: int B^T D B */
+    bool lumped; /* of a stored body: mass is diagonal, and modes are not orthonormal by it */
 } RefMatrices;
 
 /* Linear elasticity, isotropic, over the tree's integration points. Eq. 18 as printed lacks the

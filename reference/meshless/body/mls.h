@@ -36,12 +36,6 @@ bool ref_mls_at(const RefNodes *nodes, RefBasis basis, const double x[3], RefSha
 
 #define REF_LEAST_PIVOT 1e-3
 
-/* How many of the points the shape functions are not defined at, after the covers of the nodes
- * nearest to such points were enlarged (up to eight times, each time of more nodes). Changes
- * reaches and bins. For a body whose surface runs along octants' faces this is the rule: its
- * corners have one octant, and covers of three edges only touch them. */
-long ref_mls_cover(RefNodes *nodes, RefBasis basis, long count, const double (*x)[3]);
-
 /* Linear functions of the nodal parameters: what constraints bind (meshless section 5.3.3). MLS
  * shape functions are no Kronecker delta, so a displacement at a point is a sum over the nodes that
  * cover it. Parameter 3 I + d is node I's along axis d. */

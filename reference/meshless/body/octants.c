@@ -1,11 +1,11 @@
 #include "octants.h"
 
-#include <gsl/gsl_integration.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "../../../lib/vector.h"
+#include "gauss_rule.h"
 
 void ref_octants_free(RefOctants *tree)
 {
@@ -51,14 +51,6 @@ typedef struct {
     RefOctants *tree;
     double volume;
 } Clip;
-
-void ref_gauss_rule(int order, double *at, double *weight)
-{
-    gsl_integration_glfixed_table *table = gsl_integration_glfixed_table_alloc((size_t)order);
-    for (int n = 0; n < order; n++)
-        gsl_integration_glfixed_point(-0.5, 0.5, (size_t)n, at + n, weight + n, table);
-    gsl_integration_glfixed_table_free(table);
-}
 
 /* Half the diagonal, with room for a field that grows faster than the distance. */
 static double reach(double edge, const double gradient[3])

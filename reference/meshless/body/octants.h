@@ -72,9 +72,6 @@ int ref_octants_at(const RefOctants *tree, const int place[3]);
 /* The centre of an octant. */
 void ref_octants_centre(const RefOctants *tree, const RefOctant *octant, double centre[3]);
 
-/* Gauss points and weights of sum 1 on -1/2..1/2: `order` of each. */
-void ref_gauss_rule(int order, double *at, double *weight);
-
 /* Volume of the body: the sum of the points' weights. */
 double ref_octants_volume(const RefOctants *tree);
 

@@ -2,7 +2,7 @@
 /* clang-format on */
 #include "../../../lib/test_frame.h"
 #include "../../../lib/test_random.h"
-#include "mls.h"
+#include "covers.h"
 
 #define CONST(array) ((const double(*)[3])(array))
 

@@ -1,10 +1,9 @@
-/* grip.h - handles that hold many points of a meshless body, and its modes while they do.
+/* grip.h - handles that hold many points of a meshless body.
  *
  * A grip's points move rigidly: by the displacement of their middle and a rotation, six linear
  * functions of z. Modes that are free everywhere would need hundreds to bend at a grip as a clamp
- * makes them; the modes here are those that all grips leave at rest, and what grips that move and
- * gravity do while nothing swings (Craig and Bampton 1968). The nodes around a grip's points turn
- * with it alone, so that warping, too, moves these points rigidly, however far. */
+ * makes them; those of grip_modes.h do with few. The nodes around a grip's points turn with it
+ * alone, so that warping, too, moves these points rigidly, however far. */
 #ifndef REF_GRIP_H
 #define REF_GRIP_H
 
@@ -23,13 +22,6 @@ typedef struct {
  * they are `apart` from each other, at most `most`. The caller frees. O(count * most). */
 RefGrip ref_grip_choose(long count, const double (*x)[3], double apart, int most);
 void ref_grip_free(RefGrip *grip);
-
-/* `count` modes of the body, the six rigid ones among them, for motions under the grips: lowest
- * modes of what all grips leave free, so many that half or more of them are; the static answers to
- * grips that are moved and turned, one at a time, and to gravity; orthonormal by Rayleigh and Ritz.
- * Errors: as ref_modes_find(). The caller frees. */
-SmCode ref_grip_modes(const RefBody *body, int grips, const RefGrip *grip, int count,
-                      RefModes *modes, SmError *error);
 
 /* Binds the motion, which has those modes, by all grips, the first of which becomes its anchor.
  * Where two grips are closer than covers reach, the points between them are met less well. */

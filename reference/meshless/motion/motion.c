@@ -1,13 +1,13 @@
 #include "motion.h"
 
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "../../../lib/isa.h"
 #include "../../../lib/vector.h"
+#include "../solve/dense.h"
+#include "../solve/least_squares.h"
 #include "frame_sums.h"
 #include "rotation.h"
 
@@ -335,12 +335,7 @@ static void bordered(const RefMotion *motion, const double *A, const double *J, 
     }
     for (size_t r = 0; r < rows; r++) S[r * rows + r] += 1e-12 * trace;
     memcpy(y, right, rows * sizeof *y);
-    gsl_matrix_view matrix = gsl_matrix_view_array(S, rows, rows);
-    gsl_vector_view vector = gsl_vector_view_array(y, rows);
-    gsl_error_handler_t *handler = gsl_set_error_handler_off();
-    bool solved = gsl_linalg_cholesky_decomp1(&matrix.matrix) == GSL_SUCCESS &&
-                  gsl_linalg_cholesky_svx(&matrix.matrix, &vector.vector) == GSL_SUCCESS;
-    gsl_set_error_handler(handler);
+    bool solved = ref_dense_definite((int)rows, S, y);
     memset(change, 0, (size_t)modes * sizeof *change);
     for (size_t r = 0; solved && r < rows; r++)
         for (int k = 0; k < modes; k++) change[k] += y[r] * J[r * (size_t)modes + (size_t)k] / A[k];
@@ -432,22 +427,31 @@ static void unwarp(const RefMotion *from, const double *anchor, double *local)
             for (int d = 0; d < 3; d++)
                 *(e < 3 ? sum + 3 * d + e : right + d) += anchor[n] * back[d];
         }
-    gsl_matrix_view matrix = gsl_matrix_view_array(sum, 3, 3);
-    gsl_vector_view vector = gsl_vector_view_array(right, 3), result = gsl_vector_view_array(t, 3);
-    gsl_permutation *order = gsl_permutation_alloc(3);
-    int sign;
-    gsl_error_handler_t *handler = gsl_set_error_handler_off();
-    gsl_linalg_LU_decomp(&matrix.matrix, order, &sign);
-    if (gsl_linalg_LU_solve(&matrix.matrix, order, &vector.vector, &result.vector) != GSL_SUCCESS)
-        memcpy(t, right, sizeof t);
-    gsl_set_error_handler(handler);
-    gsl_permutation_free(order);
+    memcpy(t, right, sizeof t);
+    if (!ref_dense_any(3, sum, t)) memcpy(t, right, sizeof t);
     for (long n = 0; n < from->nodes; n++) {
         double beside[3], back[3];
         for (int d = 0; d < 3; d++) beside[d] = from->moved[n][d] - t[d];
         ref_rotation_unmean(from->rotation[n], beside, back);
         for (int d = 0; d < 3; d++) local[3 * n + d] = t[d] + back[d];
     }
+}
+
+/* Modes that are not orthonormal by this mass: amplitudes of their products with what is moved. */
+static void undo_products(const RefBody *body, const RefMotion *motion, double *const ends[2])
+{
+    size_t modes = (size_t)motion->modes;
+    double *products = sm_alloc(modes * modes, sizeof *products), *mass = node_masses(body);
+    double *N = sm_alloc(modes * modes, sizeof *N), *none = sm_alloc(modes, sizeof *none);
+    for (size_t n = 0; n < (size_t)motion->nodes; n++)
+        for (size_t d = 0; d < 3; d++)
+            ref_least_squares_add((int)modes, motion->row + (6 * n + d) * modes, 0, mass[n],
+                                  products, none);
+    for (int end = 0; end < 2; end++) {
+        memcpy(N, products, modes * modes * sizeof *N);
+        ref_least_squares_solve((int)modes, 0, N, ends[end]);
+    }
+    sm_free_all(products, mass, N, none);
 }
 
 void ref_motion_take(const RefBody *body, RefMotion *from, double h, RefMotion *motion)
@@ -467,6 +471,7 @@ void ref_motion_take(const RefBody *body, RefMotion *from, double h, RefMotion *
                 for (size_t k = 0; k < modes; k++)
                     ends[end][k] += Mu[3 * n + d] * motion->row[(6 * n + d) * modes + k];
     }
+    if (body->matrices.lumped) undo_products(body, motion, ends);
     for (size_t k = 0; k < modes; k++) motion->speed[k] = (motion->z[k] - motion->speed[k]) / h;
     free(local);
     free(Mu);

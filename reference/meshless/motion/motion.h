@@ -84,7 +84,8 @@ void ref_motion_pose(RefMotion *motion);
 void ref_motion_push(const double (*impulse)[3], RefMotion *motion);
 
 /* Takes over where another motion of the same body is and how fast it goes, as well as these modes
- * can: displacements that were turned by rotations are turned back by the same. O(nodes * modes).
+ * can, by the body's mass: displacements that were turned by rotations are turned back by the same.
+ * O(nodes * modes).
  */
 void ref_motion_take(const RefBody *body, RefMotion *from, double h, RefMotion *motion);
 

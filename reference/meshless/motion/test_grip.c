@@ -3,7 +3,7 @@
 #include "../../../lib/test_frame.h"
 #include "../../../lib/vector.h"
 #include "../test_beam.h"
-#include "grip.h"
+#include "grip_modes.h"
 
 static const double size[3] = {4, 1, 1};
 enum { SIDE = 5, LAYERS = 3, HELD = SIDE * SIDE * LAYERS, MODES = 48 };

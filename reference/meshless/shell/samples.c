@@ -4,6 +4,8 @@
 #include <string.h>
 
 #include "../../../lib/csr.h"
+#include "../body/covers.h"
+#include "../body/gauss_rule.h"
 
 enum { ORDER = 3, PARTS = 2, ALONG = ORDER * PARTS };
 

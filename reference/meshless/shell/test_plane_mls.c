@@ -1,5 +1,5 @@
 /* Shape functions in the plane, on balanced quadtrees of random charts, also across seams. */
-#include "../body/mls.h"
+#include "../body/covers.h"
 #include "test_charts.h"
 
 static unsigned seed = 1;
