@@ -22,7 +22,7 @@ add_custom_target(provenance
 
 sources_of(bench_sources bench/*.c reference/paper.c)
 include(scripts/embed.cmake)
-list(FILTER bench_sources EXCLUDE REGEX "/(main|replay|engine_list)\\.c$")
+list(FILTER bench_sources EXCLUDE REGEX "/(main|replay|engine_list|store_body)\\.c$")
 
 # How a mesh is put in place of another has the same bits on every machine, as what is simulated has.
 set_source_files_properties(bench/scene/body.c PROPERTIES COMPILE_OPTIONS -ffp-contract=off)
@@ -45,6 +45,8 @@ add_executable(shapebench bench/main.c)
 target_link_libraries(shapebench PRIVATE shapebench_flags shapebench_engines shapebench_bench)
 add_executable(replay EXCLUDE_FROM_ALL bench/regress/replay.c) # of scripts/check_regress.sh
 target_link_libraries(replay PRIVATE shapebench_flags shapebench_engines shapebench_bench)
+add_executable(store_body bench/view/store_body.c) # of scripts/run view
+target_link_libraries(store_body PRIVATE shapebench_flags shapebench_engines shapebench_bench)
 
 set(scripts_folder ${CMAKE_INSTALL_DATADIR}/shapebench)
 install(TARGETS shapebench)

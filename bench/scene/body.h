@@ -8,6 +8,7 @@
 typedef struct BenchBody {
     SmMesh mesh;
     const RefMpu *given; /* of points whose surface the mesh is, the caller's; NULL: a mesh alone */
+    const RefStored *stored; /* what the meshless engine takes in place of the mesh, the caller's */
     SmVoxels voxels;
     double low[3], high[3]; /* the mesh's bounding box */
     double (*x0)[3];        /* [voxels.particle_count] rest positions, instance pose not applied */

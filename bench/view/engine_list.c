@@ -1,6 +1,7 @@
-/* engine_list.c - the engines of the page, in single precision. */
+/* engine_list.c - the engines of the page, in single precision; elastic bodies in double. */
 #include "../../fastlsm/fastlsm.h"
 #include "../../octree/engine.h"
+#include "../../reference/meshless/engine.h"
 #include "../engines.h"
 #include "../play/body_group.h"
 #include "../scene/memory.h"
@@ -16,7 +17,13 @@ static const BenchEngine sampled = {.type = {&octree_engine_f32},
                                     .set_width = bench_width_of_octree,
                                     .carrier = &bench_octree_carrier,
                                     .memory = bench_memory_octree};
-static const BenchEngine *const list[] = {&lattice, &sampled, NULL};
+static const BenchEngine elastic = {.type = {&ref_meshless_engine},
+                                    .own = BENCH_OF_ELASTIC,
+                                    .whose = "a meshless body's",
+                                    .reference = true,
+                                    .carrier = &bench_lattice_carrier,
+                                    .memory = bench_memory_lattice};
+static const BenchEngine *const list[] = {&lattice, &sampled, &elastic, NULL};
 
 __attribute__((constructor)) static void hand_over(void)
 {

@@ -6,6 +6,7 @@
 
 #include "../../lib/vector.h"
 #include "../../octree/surface/gradient.h"
+#include "../../reference/meshless/motion/rotation.h"
 #include "side.h"
 #include "view.h"
 
@@ -50,9 +51,19 @@ static double (*get_field(const BenchGroup *group, SmField field))[3]
 
 /* ---- particles and links */
 
+/* Where a node of an elastic body is now. */
+static void node_place(const ViewSide *side, const RefElastic *elastic, long node, double x[3])
+{
+    for (int d = 0; d < 3; d++)
+        x[d] = elastic->body.nodes.position[node][d] + elastic->motion.moved[node][d] +
+               side->play.body->pose[0][d][3];
+}
+
 int view_particles(int number)
 {
     const ViewSide *side = view_side_of(number);
+    const RefElastic *elastic = side ? view_side_elastic(side) : NULL;
+    if (elastic) return (int)elastic->motion.nodes;
     return side ? (int)bench_playback_particles(&side->play) : 0;
 }
 
@@ -62,7 +73,13 @@ const float *view_particle_points(int number)
     if (!side) return NULL;
     float *point = make_room(&inside[number].points, view_particles(number), 3 * sizeof *point);
     float *to = point;
-    for (int g = 0; g < side->play.count; g++) {
+    const RefElastic *elastic = view_side_elastic(side);
+    for (long n = 0; elastic && n < elastic->motion.nodes; n++) {
+        double x[3];
+        node_place(side, elastic, n, x);
+        narrow((const double(*)[3])x, 1, point + 3 * n);
+    }
+    for (int g = 0; !elastic && g < side->play.count; g++) {
         const BenchGroup *group = &side->play.group[g];
         double(*x)[3] = get_field(group, SM_POSITION);
         narrow((const double(*)[3])x, group->runner.particles, to);
@@ -193,7 +210,8 @@ static void put_cells(const BenchGroup *group, float *cell)
 
 int view_cells(int number)
 {
-    return number == VIEW_OCTREE ? view_particles(number) : 0;
+    const ViewSide *side = view_side_of(number);
+    return side && side->play.group[0].skin.octree ? view_particles(number) : 0;
 }
 
 const float *view_cell_frames(int number)
@@ -329,12 +347,47 @@ static void mark_summation_nodes(struct Inside *in, const BenchGroup *group, lon
     carried_free(&carried);
 }
 
+/* The cover of a node: the nodes that stand in it, and the cube as it is turned at the node. */
+static int mark_cover(struct Inside *in, const ViewSide *side, const RefElastic *elastic, long p)
+{
+    const RefNodes *nodes = &elastic->body.nodes;
+    double x[3], R[9], reach = nodes->reach[p];
+    long count = 0;
+    int(*member)[3] = make_room(&in->members, nodes->count, sizeof *member);
+    for (long n = 0; n < nodes->count; n++) {
+        double far = 0;
+        for (int d = 0; d < 3; d++)
+            far = fmax(far, fabs(nodes->position[n][d] - nodes->position[p][d]));
+        if (far < reach) memcpy(member[count++], (int[3]){(int)n}, sizeof *member);
+    }
+    node_place(side, elastic, p, x);
+    ref_rotation(elastic->motion.rotation[p], R);
+    float *box = make_room(&in->boxes, 1, VIEW_BOX_NUMBERS * sizeof *box);
+    for (int c = 0; c < 8; c++)
+        for (int d = 0; d < 3; d++) {
+            double at = x[d];
+            for (int e = 0; e < 3; e++) at += R[3 * d + e] * (c >> e & 1 ? reach : -reach);
+            box[3 * c + d] = (float)at;
+        }
+    box[VIEW_BOX_NUMBERS - 1] = 0;
+    for (int d = 0; d < 3; d++) in->goal[d] = NAN;
+    in->figure[VIEW_NODES] = 1;
+    in->figure[VIEW_GOAL_CELLS] = NAN;
+    return (int)count;
+}
+
 int view_mark(int number, int particle)
 {
     long first;
-    const BenchGroup *group = group_of(view_side_of(number), particle, &first);
+    const ViewSide *side = view_side_of(number);
+    const RefElastic *elastic = side ? view_side_elastic(side) : NULL;
     if (number >= 0 && number < VIEW_SIDES)
         memset(inside[number].figure, 0, sizeof inside[number].figure);
+    if (elastic) {
+        bool is = particle >= 0 && particle < elastic->motion.nodes;
+        return is ? mark_cover(&inside[number], side, elastic, particle) : 0;
+    }
+    const BenchGroup *group = group_of(side, particle, &first);
     if (!group) return 0;
     struct Inside *in = &inside[number];
     const BenchRunner *runner = &group->runner;
@@ -415,13 +468,13 @@ const float *view_rest_normals(int side)
 
 const char *view_not_comparable(void)
 {
-    const ViewSide *lattice = view_side_of(VIEW_LATTICE), *octree = view_side_of(VIEW_OCTREE);
-    if (!lattice || !octree) return "One of the two engines is not there.";
+    const ViewSide *lattice = view_side_of(VIEW_LATTICE), *other = view_side_of(VIEW_OTHER);
+    if (!lattice || !other) return "One of the two engines is not there.";
     for (int s = 0; s < VIEW_SIDES; s++)
         for (int g = 0; g < view_side_of(s)->play.count; g++)
             if (sm_skin_cut_triangles(&view_side_of(s)->play.group[g].skin) > 0)
                 return "The body has been cut: the two surfaces have other vertices.";
-    if (lattice->vertices != octree->vertices) return "The two surfaces have other vertices.";
+    if (lattice->vertices != other->vertices) return "The two surfaces have other vertices.";
     return "";
 }
 

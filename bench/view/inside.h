@@ -4,9 +4,10 @@
  * steps, changes, opens, or finds the same of the same side. Nothing here changes the motion but
  * for rounding, and that view_mark() alone: the next rotations begin from those of its goals.
  *
- * Places are those now, in mesh units. A side's particles, of the octree its simulation nodes, are
- * numbered from 0 through all of its bodies; while they run, an octree's numbers change with its
- * cells. */
+ * Places are those now, in mesh units. A side's particles, of the octree and of an elastic body its
+ * simulation nodes, are numbered from 0 through all of its bodies; while they run, an octree's
+ * numbers change with its cells. An elastic body's node has a cover for a region: it moves what is
+ * there (meshless section 3), in one cube, which view_boxes() has as it is turned; and no goal. */
 #ifndef BENCH_INSIDE_H
 #define BENCH_INSIDE_H
 
@@ -17,14 +18,14 @@ const float *view_particle_points(int side);
 
 /* Unbroken links of FastLSM, of all bodies: how many, O(particles); and their ends, [links][2],
  * O(links): first those along the lattice's axes, of which view_straight_links() says how many
- * there were. 0 of the octree. */
+ * there were. 0 of other engines. */
 int view_links(int side);
 const int *view_link_ends(int side);
 int view_straight_links(int side);
 
 /* Cells of the octree's leaves, particle by particle, as the surface is carried (octree section 7):
  * [cells][VIEW_CELL_NUMBERS], the middle, from there the way to three faces, and the level, 0 of a
- * base cell. O(edges of the visibility graph). 0 and NULL of FastLSM. */
+ * base cell. O(edges of the visibility graph). 0 and NULL of other engines. */
 enum { VIEW_CELL_NUMBERS = 13 };
 int view_cells(int side);
 const float *view_cell_frames(int side);

@@ -11,6 +11,13 @@ bool view_side_is_there(const ViewSide *side)
     return side->play.group != NULL;
 }
 
+RefElastic *view_side_elastic(const ViewSide *side)
+{
+    if (!view_side_is_there(side)) return NULL;
+    const BenchRunner *runner = &side->play.group[0].runner; /* such a body is alone */
+    return runner->type == &ref_meshless_engine ? ref_meshless_elastic(runner->engine) : NULL;
+}
+
 /* The scene as this engine can play it. */
 static void suit(BenchScene *scene, const BenchEngine *engine)
 {
@@ -18,7 +25,7 @@ static void suit(BenchScene *scene, const BenchEngine *engine)
     const SmEngineType *type = engine->type[0];
     if (!type->refines) scene->touch_count = scene->view.level = 0;
     if (!type->get_shapes) scene->octree.creep = 0;
-    if (type->refines) scene->params.strain_limit = 0;
+    if (type->refines || !type->cut) scene->params.strain_limit = 0;
     if (engine->sampled && !sampled) /* regions as wide as its cells; its own way to sum */
         engine->set_width(scene, 1, scene->octree.epsilon, false);
     strcpy(scene->engine, type->name);
@@ -96,6 +103,7 @@ bool view_side_is_like(const ViewSide *side, const ViewSide *other)
 {
     if (view_side_is_there(side) != view_side_is_there(other)) return false;
     if (side->scene.instances != other->scene.instances) return false;
+    if (strcmp(side->scene.engine, other->scene.engine) != 0) return false;
     const ViewSide *both[] = {side, other};
     for (int s = 0; s < 2; s++) /* bodies at rest are all alike */
         for (int g = 0; g < both[s]->play.count; g++)
@@ -130,8 +138,12 @@ static void copy_field(ViewSide *side, const ViewSide *from, SmField field)
 
 void view_side_go_on(ViewSide *side, const ViewSide *from)
 {
-    copy_field(side, from, SM_POSITION);
-    copy_field(side, from, SM_VELOCITY);
+    if (view_side_elastic(side)) {
+        ref_meshless_go_on(side->play.group[0].runner.engine, from->play.group[0].runner.engine);
+    } else {
+        copy_field(side, from, SM_POSITION);
+        copy_field(side, from, SM_VELOCITY);
+    }
     for (int g = 0; g < side->play.count; g++) side->play.group[g].runner.time = from->play.time;
     side->play.time = from->play.time;
     side->steps = from->steps;

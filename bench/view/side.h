@@ -36,13 +36,16 @@ void view_side_push_as(ViewSide *side, const ViewSide *own);
 
 bool view_side_is_there(const ViewSide *side);
 
+/* The elastic body that the side plays; NULL: it plays no such. */
+RefElastic *view_side_elastic(const ViewSide *side);
+
 /* The side of this number (view.h) if it is open and there, or NULL. */
 ViewSide *view_side_of(int number);
 
 /* May another side go on where this one is? Not where material has been cut or has broken. */
 bool view_side_is_whole(const ViewSide *side);
 
-/* Has it bodies of as many particles as another side? */
+/* Has it bodies of as many particles as another side, of the same engine? */
 bool view_side_is_like(const ViewSide *side, const ViewSide *other);
 
 /* Positions, velocities and time of another side that it is like. */

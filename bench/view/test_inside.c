@@ -136,9 +136,9 @@ TEST(lattices_are_as_brute_force_has_them)
 /* A node's members are the leaves below it: none is below two, and all are below one. */
 static void check_summation_nodes(const OctStructure *s, const int *leaf, long p, long members)
 {
-    const int(*member)[3] = (const int(*)[3])view_members(VIEW_OCTREE);
+    const int(*member)[3] = (const int(*)[3])view_members(VIEW_OTHER);
     const SmCsr *rows = &s->regions.members;
-    long nodes = (long)view_mark_figure(VIEW_OCTREE, VIEW_NODES), below = 0;
+    long nodes = (long)view_mark_figure(VIEW_OTHER, VIEW_NODES), below = 0;
     assert_int_equal(nodes, rows->end[leaf[p]] - rows->first[leaf[p]]);
     for (long i = 0; i < members; i++) {
         int at = s->tree.node[leaf[member[i][0]]], wanted;
@@ -159,7 +159,7 @@ TEST(octrees_are_as_brute_force_has_them)
     for (int n = 0; n < SCENES; n++) {
         char reason[BENCH_TREE_REASON];
         open_scene(scene[n].name, scene[n].frames);
-        const BenchGroup *group = group_of(VIEW_OCTREE);
+        const BenchGroup *group = group_of(VIEW_OTHER);
         const BenchRunner *runner = &group->runner;
         const OctStructure *s = oct_engine_structure(runner->engine);
         const int *leaf = oct_engine_leaves(runner->engine);
@@ -175,15 +175,15 @@ TEST(octrees_are_as_brute_force_has_them)
         ref_tree_init(&s->tree, &s->regions, s->mass, false, &ref);
         ref_tree_goals(&ref, (const double(*)[3])cells, false, g);
         for (long p = 0; p < count; p += 1 + count / 40) {
-            long members = view_mark(VIEW_OCTREE, (int)p);
-            const int(*member)[3] = (const int(*)[3])view_members(VIEW_OCTREE);
+            long members = view_mark(VIEW_OTHER, (int)p);
+            const int(*member)[3] = (const int(*)[3])view_members(VIEW_OTHER);
             assert_int_equal(members, ref.regions.start[p + 1] - ref.regions.start[p]);
             sm_sort_ints(ref.regions.member + ref.regions.start[p], members);
             for (long i = 0; i < members; i++)
                 assert_int_equal(member[i][0], ref.regions.member[ref.regions.start[p] + i]);
             check_summation_nodes(s, leaf, p, members);
             for (int d = 0; d < 3; d++) g[p][d] = s->origin[d] + s->cell * g[p][d];
-            check_goal(VIEW_OCTREE, g[p], x[p], s->cell);
+            check_goal(VIEW_OTHER, g[p], x[p], s->cell);
         }
         ref_tree_free(&ref);
         sm_free_all(x, cells, g);
@@ -213,13 +213,13 @@ TEST(cells_hold_the_body_once)
     static const char *const names[] = {"hand-sampled", "liver", "flowers"};
     for (int n = 0; n < 3; n++) {
         open_scene(names[n], 0);
-        BenchGroup *group = group_of(VIEW_OCTREE);
+        BenchGroup *group = group_of(VIEW_OTHER);
         double(*rest)[3] = get(group, SM_REST);
         group->runner.type->set(group->runner.engine, SM_POSITION, (const double(*)[3])rest);
         free(rest);
         const OctStructure *s = oct_engine_structure(group->runner.engine);
-        const float *cell = view_cell_frames(VIEW_OCTREE);
-        assert_int_equal(view_cells(VIEW_OCTREE), view_particles(VIEW_OCTREE));
+        const float *cell = view_cell_frames(VIEW_OTHER);
+        assert_int_equal(view_cells(VIEW_OTHER), view_particles(VIEW_OTHER));
         long held = 0;
         for (long i = 0; i < group->runner.count; i++) {
             const float *c = cell + VIEW_CELL_NUMBERS * i;
@@ -250,14 +250,14 @@ TEST(cells_hold_the_body_once)
 TEST(boxes_are_the_nodes_cells)
 {
     open_scene("hand-sampled", 0);
-    BenchGroup *group = group_of(VIEW_OCTREE);
+    BenchGroup *group = group_of(VIEW_OTHER);
     double(*rest)[3] = get(group, SM_REST);
     group->runner.type->set(group->runner.engine, SM_POSITION, (const double(*)[3])rest);
     const OctStructure *s = oct_engine_structure(group->runner.engine);
     for (long p = 0; p < group->runner.count; p += 17) {
-        long members = view_mark(VIEW_OCTREE, (int)p);
-        const int(*member)[3] = (const int(*)[3])view_members(VIEW_OCTREE);
-        const float *box = view_boxes(VIEW_OCTREE);
+        long members = view_mark(VIEW_OTHER, (int)p);
+        const int(*member)[3] = (const int(*)[3])view_members(VIEW_OTHER);
+        const float *box = view_boxes(VIEW_OTHER);
         for (long i = 0; i < members; i++) {
             const float *b = box + VIEW_BOX_NUMBERS * member[i][1];
             double edge = s->cell * (1 << (s->tree.levels - (int)b[24]));
@@ -329,17 +329,17 @@ TEST(differences_are_of_the_same_vertex)
 {
     open_scene("flowers", 20);
     long each = group_of(VIEW_LATTICE)->skin.surface.vertex_count, far = 0;
-    assert_true(view_side_of(VIEW_OCTREE)->play.count > 1);
+    assert_true(view_side_of(VIEW_OTHER)->play.count > 1);
     for (int side = 0; side < VIEW_SIDES; side++) view_surface(side);
-    const float *apart = view_difference(VIEW_OCTREE);
+    const float *apart = view_difference(VIEW_OTHER);
     assert_non_null(apart);
     assert_string_equal(view_not_comparable(), "");
     double cell = view_figure(0, VIEW_CELL);
-    for (long v = 0; v < view_vertices(VIEW_OCTREE); v += 7) {
+    for (long v = 0; v < view_vertices(VIEW_OTHER); v += 7) {
         long instance;
         double rest[3], square = 0;
-        assert_true(view_side_vertex(view_side_of(VIEW_OCTREE), v, &instance, rest));
-        const float *a = view_points(VIEW_OCTREE) + 3 * v; /* the lattices share one group */
+        assert_true(view_side_vertex(view_side_of(VIEW_OTHER), v, &instance, rest));
+        const float *a = view_points(VIEW_OTHER) + 3 * v; /* the lattices share one group */
         const float *b = view_points(VIEW_LATTICE) + 3 * (instance * each + v % each);
         for (int d = 0; d < 3; d++) square += (double)(a[d] - b[d]) * (a[d] - b[d]);
         assert_true(fabs(apart[v] - sqrt(square) / cell) < 1e-3);
@@ -368,7 +368,7 @@ TEST(numbers_that_nothing_has_do_nothing)
 {
     open_scene("penguin", 0);
     assert_int_equal(view_particles(2) + view_particles(-1) + view_links(7), 0);
-    assert_int_equal(view_links(VIEW_OCTREE) + view_cells(VIEW_LATTICE), 0);
+    assert_int_equal(view_links(VIEW_OTHER) + view_cells(VIEW_LATTICE), 0);
     assert_int_equal(view_mark(0, -1) + view_mark(0, 1 << 30) + view_mark(9, 0), 0);
     assert_null(view_particle_points(2));
     assert_null(view_cell_frames(VIEW_LATTICE));

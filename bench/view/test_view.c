@@ -45,7 +45,7 @@ TEST(sides_play_the_scene)
         if (bench_scene_find(names[n], &scene, &error)) fail_msg("%s", error.text);
         if (bench_body_of_scene(&scene, NULL, &body, &error)) fail_msg("%s", error.text);
         open_scene(view_scene_text(names[n]));
-        int side = !strcmp(scene.engine, engines[VIEW_OCTREE]);
+        int side = !strcmp(scene.engine, engines[VIEW_OTHER]);
         const SmEngineType *type = bench_engine(scene.engine)->type[0];
         BenchPlayback play;
         if (bench_playback_create(&scene, &body, type, 1, 1, &play, &error))
@@ -196,7 +196,7 @@ TEST(hands_wait_for_steps)
 TEST(hands_hold_through_a_cut)
 {
     open_scene(view_scene_text("liver"));
-    int side = VIEW_OCTREE, steps = 0;
+    int side = VIEW_OTHER, steps = 0;
     double nodes = view_figure(side, VIEW_PARTICLES), from[3];
     long left = 0;
     for (long v = 0; v < view_vertices(side); v++)
@@ -269,7 +269,7 @@ TEST(a_touch_refines)
 {
     const char *text = view_scene_text("flowers");
     open_scene(text);
-    int side = VIEW_OCTREE, top = utmost(side, 1, 1);
+    int side = VIEW_OTHER, top = utmost(side, 1, 1);
     int body = view_body(side, top);
     double nodes = view_figure(side, VIEW_PARTICLES), before[3], after[3];
     view_step(side, 5);
@@ -343,11 +343,11 @@ TEST(a_handle_may_lose_its_node)
                        "              level = 3; start = 0.1; stop = 0.6; hold = 0.1; } );\n";
     for (int i = 0; i < 2; i++) {
         assert_int_equal(opened(text, i), 0);
-        assert_string_equal(view_absent(VIEW_OCTREE), "");
-        double nodes = view_figure(VIEW_OCTREE, VIEW_PARTICLES);
-        view_step(VIEW_OCTREE, 30);
-        assert_true(view_figure(VIEW_OCTREE, VIEW_PARTICLES) > nodes);
-        assert_string_equal(view_absent(VIEW_OCTREE), "");
+        assert_string_equal(view_absent(VIEW_OTHER), "");
+        double nodes = view_figure(VIEW_OTHER, VIEW_PARTICLES);
+        view_step(VIEW_OTHER, 30);
+        assert_true(view_figure(VIEW_OTHER, VIEW_PARTICLES) > nodes);
+        assert_string_equal(view_absent(VIEW_OTHER), "");
     }
 }
 

@@ -6,9 +6,11 @@
 #include <string.h>
 
 #include "../../reference/paper.h"
+#include "../engines.h"
 #include "../scene/builtin.h"
 #include "given.h"
 #include "side.h"
+#include "stored_bodies.h"
 
 static struct {
     char *text; /* the room for it */
@@ -43,6 +45,11 @@ char *view_room(int bytes)
 {
     free(view.text);
     return view.text = sm_alloc((size_t)bytes + 1, 1);
+}
+
+char *view_text(void)
+{
+    return view.text;
 }
 
 const char *view_message(void)
@@ -140,14 +147,17 @@ static SmCode make_body(BenchScene *scene, BenchBody *body, SmError *error)
                        "'density'");
     SmCode code = view_given_load(scene->mesh, &mesh, error);
     if (!code) code = check_surface(scene, &mesh, error);
-    if (!code) return bench_body_create(scene, &mesh, body, error);
-    sm_mesh_free(&mesh);
+    if (code) {
+        sm_mesh_free(&mesh);
+        return code;
+    }
+    code = bench_body_create(scene, &mesh, body, error);
+    if (!code) body->stored = view_stored_find(scene, &body->mesh);
     return code;
 }
 
 int view_open(int bytes, int keep)
 {
-    static const char *const engine[VIEW_SIDES] = {"fastlsm", "octree"};
     static BenchScene scene;
     SmError error;
     if (bench_scene_parse(view.text, (size_t)bytes, "scene", &scene, &error) ||
@@ -157,6 +167,8 @@ int view_open(int bytes, int keep)
     const ViewAllowed *allowed = keep ? &view.allowed : &nothing;
     BenchBody *body = sm_alloc(1, sizeof *body);
     ViewSide *side[VIEW_SIDES] = {NULL, NULL};
+    bool elastic = bench_engine(scene.engine)->own == BENCH_OF_ELASTIC;
+    const char *const engine[VIEW_SIDES] = {"fastlsm", elastic ? scene.engine : "octree"};
     if (make_body(&scene, body, &error)) {
         free(body);
         return refuse(&error);
@@ -165,9 +177,9 @@ int view_open(int bytes, int keep)
         side[s] = sm_alloc(1, sizeof *side[s]);
         view_side_create(&scene, body, engine[s], allowed, side[s]);
     }
-    int own = strcmp(scene.engine, engine[VIEW_OCTREE]) == 0 ? VIEW_OCTREE : VIEW_LATTICE;
+    int own = strcmp(scene.engine, engine[VIEW_OTHER]) == 0 ? VIEW_OTHER : VIEW_LATTICE;
     view_side_push_as(side[!own], side[own]);
-    if (!view_side_is_there(side[VIEW_LATTICE]) && !view_side_is_there(side[VIEW_OCTREE])) {
+    if (!view_side_is_there(side[VIEW_LATTICE]) && !view_side_is_there(side[VIEW_OTHER])) {
         error = side[VIEW_LATTICE]->absent;
         close_sides(side, body);
         return refuse(&error);
@@ -182,6 +194,12 @@ ViewSide *view_side_of(int number)
 {
     ViewSide *side = number >= 0 && number < VIEW_SIDES ? view.side[number] : NULL;
     return side && view_side_is_there(side) ? side : NULL;
+}
+
+const char *view_engine(int side)
+{
+    if (side < 0 || side >= VIEW_SIDES || !view.side[side]) return "";
+    return view.side[side]->scene.engine;
 }
 
 const char *view_absent(int side)
@@ -199,6 +217,8 @@ void view_step(int side, int steps)
 static double counted(const ViewSide *side, int figure)
 {
     double sum = 0, mean = 0;
+    const RefElastic *elastic = view_side_elastic(side);
+    if (elastic && figure == VIEW_PARTICLES) return (double)elastic->motion.nodes;
     for (int g = 0; g < side->play.count; g++) {
         SmCounts counts;
         const BenchRunner *runner = &side->play.group[g].runner;
@@ -249,12 +269,18 @@ double view_stage_ms(int number, int stage)
     return 1e3 * side->lap[stage] / (double)side->timed;
 }
 
+const char *view_stage_name(int number, int stage)
+{
+    const ViewSide *side = view_side_of(number);
+    if (!side || stage < 0 || stage >= SM_STAGES) return NULL;
+    return sm_engine_stage(side->play.group[0].runner.type, (SmStage)stage);
+}
+
 double view_paper_percent(int number, int stage)
 {
-    static const char *const paper[VIEW_SIDES] = {"fastlsm", "octree"};
     const ViewSide *side = view_side_of(number);
     if (!side || stage < 0 || stage >= SM_STAGES) return NAN;
-    const RefPaperRow *row = ref_paper_find(paper[number], side->scene.row);
+    const RefPaperRow *row = ref_paper_find(side->scene.engine, side->scene.row);
     return row ? row->stage_percent[stage].value : NAN;
 }
 

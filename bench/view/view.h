@@ -1,13 +1,14 @@
-/* view.h - what the page asks of the engines: one scene, simulated by FastLSM and by the octree
+/* view.h - what the page asks of the engines: one scene, simulated by FastLSM and by another engine
  * side by side, and pulled by hand in both.
  *
  * The page calls these by number and pointer (WebAssembly knows no structs): a side is 0, FastLSM,
- * or 1, the octree. Pointers stay valid until the next call that steps, changes or opens. Nothing
- * here aborts on what a user types: view_open() says what is wrong. */
+ * or 1, the octree; of a scene for the meshless engine 1 is that. Pointers stay valid until the
+ * next call that steps, changes or opens. Nothing here aborts on what a user types: view_open()
+ * says what is wrong. */
 #ifndef BENCH_VIEW_H
 #define BENCH_VIEW_H
 
-enum { VIEW_LATTICE, VIEW_OCTREE, VIEW_SIDES };
+enum { VIEW_LATTICE, VIEW_OTHER, VIEW_SIDES };
 
 /* Built-in scenes that can be opened: names, number 0 and up, NULL past the last; and the text of a
  * scene's file. */
@@ -16,6 +17,7 @@ const char *view_scene_text(const char *name);
 
 /* Room for `bytes` of text, which the page fills before view_open(). */
 char *view_room(int bytes);
+char *view_text(void); /* that room again */
 
 /* Reads the text in that room as a scene file, and makes both sides anew, at rest and then
  * disturbed as it says. With `keep` positions and velocities go on where both sides' bodies are of
@@ -23,6 +25,9 @@ char *view_room(int bytes);
  * view_message() is the line that says why. */
 int view_open(int bytes, int keep);
 const char *view_message(void);
+
+/* The name of the engine that a side is for, be it there or not; "" where nothing is open. */
+const char *view_engine(int side);
 
 /* The line that says why this side is not there; "" of one that is. At least one is. */
 const char *view_absent(int side);
@@ -33,7 +38,7 @@ void view_step(int side, int steps);
 
 /* Figures of a side. */
 enum {
-    VIEW_PARTICLES,
+    VIEW_PARTICLES, /* of the octree and of an elastic body simulation nodes */
     VIEW_REGIONS,
     VIEW_LINKS, /* of FastLSM */
     VIEW_BROKEN,
@@ -56,6 +61,9 @@ double view_figure(int side, int figure);
  * since view_clear_stages(), and how many steps that were. */
 double view_stage_ms(int side, int stage);
 int view_stage_steps(int side);
+
+/* What the side's engine calls the stage; NULL: it has no such. */
+const char *view_stage_name(int side, int stage);
 
 /* The percentage of a step that this engine's paper gives for the stage in the scene that is open;
  * NaN: none. */

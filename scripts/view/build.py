@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """build.py - writes the page as one file that asks for nothing else, from this folder and the engines.
 
-    build.py WASM OUT.html SCENE_TEXT_FILE MESH_FILE
+    build.py WASM OUT.html SCENE_TEXT_FILE MESH_FILE [BODY_FILE...]
 
-The page opens with that scene and its mesh, or drops a mesh alone; '' stands for none. It runs from file://, where
+The page opens with that scene and its mesh, or drops a mesh alone; '' stands for none. It carries these elastic
+bodies (bench/view/store_body.c). It runs from file://, where
 modules cannot import each other by path: each is a data: URL with a name in the import map."""
 import base64
 import contextlib
@@ -21,12 +22,16 @@ def encode(data):
     return base64.b64encode(data).decode()
 
 
+def pack(data):
+    return encode(gzip.compress(data, mtime=0))
+
+
 def as_json(value):
     """JSON that may stand in a script element."""
     return json.dumps(value, ensure_ascii=False).replace('<', '\\u003c')
 
 
-def build(wasm, scene, mesh):
+def build(wasm, scene, mesh, bodies):
     modules = {f'view/{path.stem}': f'data:text/javascript;base64,{encode(path.read_bytes())}'
                for path in sorted(HERE.glob('*.js'))}
     shaders = {path.name: path.read_text() for path in sorted(HERE.iterdir())
@@ -34,8 +39,9 @@ def build(wasm, scene, mesh):
     parts = {
         '@STYLE@': (HERE / 'page.css').read_text().strip(),
         '@IMPORTS@': as_json({'imports': modules}),
-        '@DATA@': as_json({'shaders': shaders, 'scene': scene, 'mesh': mesh}),
-        '@WASM@': encode(gzip.compress(wasm, mtime=0)),
+        '@DATA@': as_json({'shaders': shaders, 'scene': scene, 'mesh': mesh,
+                           'bodies': bodies}),
+        '@WASM@': pack(wasm),
     }
     page = (HERE / 'page.html').read_text(encoding='utf-8')
     return re.sub('|'.join(parts), lambda mark: parts[mark.group()], page)
@@ -53,15 +59,20 @@ def read(path, how):
 
 
 def read_mesh(path):
-    return {'name': path.name, 'gzip': encode(gzip.compress(path.read_bytes(), mtime=0))}
+    return {'name': path.name, 'gzip': pack(path.read_bytes())}
+
+
+def read_body(path):
+    return pack(path.read_bytes())
 
 
 def main(arguments):
-    if len(arguments) != 4:
+    if len(arguments) < 4:
         sys.exit(__doc__)
     wasm, out = pathlib.Path(arguments[0]), pathlib.Path(arguments[1])
     scene = read(arguments[2], lambda path: path.read_text(encoding='utf-8'))
-    page = build(wasm.read_bytes(), scene, read(arguments[3], read_mesh))
+    mesh = read(arguments[3], read_mesh)
+    page = build(wasm.read_bytes(), scene, mesh, [read(path, read_body) for path in arguments[4:]])
     new = f'{out}.{os.getpid()}.tmp'
     try:
         pathlib.Path(new).write_text(page, encoding='utf-8')
