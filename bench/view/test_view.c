@@ -5,8 +5,10 @@
 
 #include "../../lib/test_frame.h"
 #include "../../lib/vector.h"
+#include "../../reference/meshless/test_solver.h"
 #include "../engines.h"
 #include "side.h"
+#include "stored_bodies.h"
 #include "view.h"
 
 static int opened(const char *text, int keep)
@@ -363,6 +365,171 @@ TEST(bodies_are_of_a_size)
                      SM_MEMORY);
     assert_non_null(strstr(view_message(), "triangles in 10000 bodies"));
     assert_true(view_figure(0, VIEW_PARTICLES) > 500);
+}
+
+/* ---- elastic bodies */
+
+static const char bar[] =
+    "mesh = \"shape:bar\"; particles = 600; engine = \"meshless\"; w = 3; damping = 0.02;\n"
+    "gravity = [0.0, -9.81, 0.0]; steps_per_frame = 1;\n"
+    "handles = ( { box_low = [0.0, 0.0, 0.0]; box_high = [0.1, 1.0, 1.0]; },\n"
+    "            { box_low = [0.9, 0.0, 0.0]; box_high = [1.0, 1.0, 1.0]; axis = [1.0, 0.0, 0.0];\n"
+    "              centre = [0.0, 0.06, 0.0]; amplitude = 0.8; period = 1.0; } );\n"
+    "meshless = { young = 1.0e6; points = 2000; nodes = 150; modes = 40; uniform = true; };\n";
+
+/* The surface that the program itself has after some steps of the bar; and stores the bar. */
+static double (*play_bar(int steps, long *vertices))[3]
+{
+    SmError error;
+    BenchScene scene;
+    BenchBody body;
+    BenchPlayback play;
+    RefStored stored;
+    char key[REF_STORED_KEY];
+    size_t size;
+    assert_int_equal(bench_scene_parse(bar, strlen(bar), "bar", &scene, &error), SM_OK);
+    if (bench_body_of_scene(&scene, NULL, &body, &error)) fail_msg("%s", error.text);
+    const SmEngineType *type = bench_engine(scene.engine)->type[0];
+    if (bench_playback_create(&scene, &body, type, 1, 1, &play, &error)) fail_msg("%s", error.text);
+    view_stored_key(&scene, key);
+    ref_stored_of(key, ref_meshless_elastic(play.group[0].runner.engine), &stored);
+    unsigned char *bytes = ref_stored_write(&stored, &size);
+    memcpy(view_stored_room((int)size), bytes, size);
+    assert_string_equal(view_stored_take(), "");
+    free(bytes);
+    ref_stored_free(&stored);
+    for (int step = 0; step < steps; step++) {
+        bench_playback_prepare(&play);
+        bench_playback_advance(&play, NULL);
+    }
+    long triangles;
+    bench_playback_size(&play, vertices, &triangles);
+    double(*point)[3] = sm_alloc((size_t)*vertices, sizeof *point);
+    bench_playback_points(&play, point);
+    bench_playback_free(&play);
+    bench_body_free(&body);
+    return point;
+}
+
+/* Stores the bar, unless a test before has. */
+static void store_bar(void)
+{
+    long vertices;
+    strcpy(view_room((int)strlen(bar)), bar);
+    if (view_stored_for((int)strlen(bar)) == 2) free(play_bar(0, &vertices));
+}
+
+/* A stored body beside FastLSM: after a hundred steps it is where the program has the body, to the
+ * rounding of the modes, which are stored in single precision. */
+TEST(a_stored_body_plays_the_scene)
+{
+    needs_solver();
+    enum { STEPS = 100 };
+    long vertices;
+    strcpy(view_room((int)strlen(bar)), bar);
+    double(*wanted)[3] = play_bar(STEPS, &vertices), most = 0;
+    assert_int_equal(view_stored_for((int)strlen(bar)), 1);
+    open_scene(bar);
+    assert_string_equal(view_engine(VIEW_OTHER), "meshless");
+    assert_string_equal(view_stage_name(VIEW_OTHER, SM_SHAPE_MATCHING), "motion");
+    assert_null(view_stage_name(VIEW_OTHER, SM_POLAR));
+    for (int side = 0; side < VIEW_SIDES; side++) view_step(side, STEPS);
+    view_surface(VIEW_OTHER);
+    assert_int_equal(view_vertices(VIEW_OTHER), vertices);
+    for (long v = 0; v < vertices; v++)
+        for (int d = 0; d < 3; d++)
+            most = fmax(most, fabs(view_points(VIEW_OTHER)[3 * v + d] - wanted[v][d]));
+    double cell = view_figure(VIEW_OTHER, VIEW_CELL);
+    if (!(most < 1e-4 * cell)) fail_msg("%g cells", most / cell);
+    assert_true(view_figure(0, VIEW_KINETIC) > 0 && view_figure(1, VIEW_KINETIC) > 0);
+    free(wanted);
+}
+
+/* The number of the vertex that is nearest to the bar's middle, on its upper face. */
+static int middle_of_bar(void)
+{
+    long best = 0;
+    for (long v = 0; v < view_vertices(1); v++) {
+        const float *is = view_points(1) + 3 * v, *was = view_points(1) + 3 * best;
+        if (is[1] - fabsf(is[0]) > was[1] - fabsf(was[0])) best = v;
+    }
+    return (int)best;
+}
+
+/* A hand, a pin, knobs and the wind on an elastic body. */
+TEST(hands_move_a_stored_body)
+{
+    needs_solver();
+    char still[2048], stiff[2048];
+    store_bar();
+    snprintf(still, sizeof still, "%s", bar);
+    memcpy(strstr(still, "amplitude = 0.8"), "amplitude = 0.0", strlen("amplitude = 0.0"));
+    open_scene(still);
+    double cell = view_figure(1, VIEW_CELL), rest[3], from[3], to[3], pinned[3];
+    int top = middle_of_bar();
+    view_step(1, 600);
+    vertex(1, top, rest); /* sags a little */
+    int grip = view_grab(1, top, 2 * cell);
+    assert_true(grip >= 0);
+    view_drag(grip, 0, 2 * cell, cell);
+    for (int side = 0; side < VIEW_SIDES; side++) {
+        memcpy(from, view_grip(side, grip), sizeof from);
+        view_step(side, 200);
+        memcpy(to, view_grip(side, grip), sizeof to);
+        assert_true(fabs(to[1] - from[1] - 2 * cell) < 0.1 * cell);
+        assert_true(fabs(to[2] - from[2] - cell) < 0.1 * cell);
+    }
+    snprintf(stiff, sizeof stiff, "%s", still); /* a knob is turned meanwhile: it goes on */
+    memcpy(strstr(stiff, "young = 1.0e6"), "young = 2.0e6", strlen("young = 2.0e6"));
+    vertex(1, top, from);
+    assert_int_equal(opened(stiff, 1), 0);
+    assert_string_equal(view_absent(1), "");
+    vertex(1, top, to);
+    if (!(sm_square_between(from, to) < 1e-4 * cell * cell))
+        fail_msg("off by %g cells", sqrt(sm_square_between(from, to)) / cell);
+    int pin = view_grab(1, utmost(1, 2, 1), cell);
+    memcpy(pinned, view_grip(1, pin), sizeof pinned);
+    view_release(grip);
+    view_step(1, 300);
+    assert_true(sqrt(sm_square_between(view_grip(1, pin), pinned)) < 0.05 * cell);
+    view_release(pin);
+    assert_int_equal(opened(still, 1), 0);
+    view_step(1, 1500);
+    vertex(1, top, to);
+    if (!(sm_square_between(rest, to) < 1e-4 * cell * cell))
+        fail_msg("%g cells from rest", sqrt(sm_square_between(rest, to)) / cell);
+    view_blow(0, 0, 20);
+    view_step(1, 600);
+    view_blow(0, 0, 0);
+    vertex(1, top, from);
+    assert_true(from[2] > to[2] + 0.01 * cell);
+    assert_int_equal(view_may_cut(1), 0);
+}
+
+/* Of other handles or another mesh no body is stored; a damaged one is refused. */
+TEST(other_bodies_are_not_taken_for_it)
+{
+    needs_solver();
+    SmError error;
+    BenchScene scene;
+    SmMesh mesh;
+    store_bar();
+    assert_int_equal(bench_scene_parse(bar, strlen(bar), "bar", &scene, &error), SM_OK);
+    assert_int_equal(bench_mesh_load(scene.mesh, &mesh, &error), SM_OK);
+    assert_non_null(view_stored_find(&scene, &mesh));
+    scene.handle[0].select.high[0] = 0.2;
+    assert_null(view_stored_find(&scene, &mesh));
+    scene.handle[0].select.high[0] = 0.1;
+    for (long v = 0; v < mesh.vertex_count; v++) mesh.position[v][0] *= 1.5;
+    assert_null(view_stored_find(&scene, &mesh));
+    sm_mesh_free(&mesh);
+    memcpy(view_stored_room(9), "what else", 9);
+    assert_non_null(strstr(view_stored_take(), "no stored elastic body"));
+    strcpy(view_room((int)strlen(block)), block);
+    assert_int_equal(view_stored_for((int)strlen(block)), 0);
+    const char *santa = view_scene_text("santa");
+    strcpy(view_room((int)strlen(santa)), santa);
+    assert_int_equal(view_stored_for((int)strlen(santa)), 2);
 }
 
 /* Numbers that no side, vertex or grip has do nothing. */

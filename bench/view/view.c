@@ -92,20 +92,30 @@ static bool is_same(const BenchBody *body)
     return view.body && body->hash == view.body->hash && body->instances == view.body->instances;
 }
 
+/* Goes on where another side is, unless that is NULL, held by what hands hold. An elastic body
+ * moves by what holds it, too: it goes on again once it is held. */
+static void take_over(ViewSide *side, const ViewSide *from)
+{
+    if (from) view_side_go_on(side, from);
+    if (!view_side_is_there(side)) return;
+    view_grips_hold(&side->grips, &side->play, view.hand, true);
+    if (!from || !view_side_elastic(side)) return;
+    view_side_go_on(side, from);
+    view_grips_hold(&side->grips, &side->play, view.hand, true);
+}
+
 /* Takes the place of what was open. Motion goes on only where both sides' does. */
 static void replace(ViewSide *side[VIEW_SIDES], BenchBody *body, bool keep)
 {
     bool same = keep && is_same(body), on = same;
     for (int s = 0; s < VIEW_SIDES && on; s++)
         on = view_side_is_like(side[s], view.side[s]) && view_side_is_whole(view.side[s]);
-    for (int s = 0; s < VIEW_SIDES && on; s++) view_side_go_on(side[s], view.side[s]);
     if (!same) memset(view.hand, 0, sizeof view.hand);
+    for (int s = 0; s < VIEW_SIDES; s++) take_over(side[s], on ? view.side[s] : NULL);
     close_sides(view.side, view.body);
     memcpy(view.side, side, sizeof view.side);
     view.body = body;
     for (int s = 0; s < VIEW_SIDES; s++) {
-        if (view_side_is_there(side[s]))
-            view_grips_hold(&side[s]->grips, &side[s]->play, view.hand, true);
         memcpy(side[s]->tools.wind, view.wind, sizeof view.wind);
         view_side_draw(side[s]);
     }
@@ -169,6 +179,8 @@ int view_open(int bytes, int keep)
     ViewSide *side[VIEW_SIDES] = {NULL, NULL};
     bool elastic = bench_engine(scene.engine)->own == BENCH_OF_ELASTIC;
     const char *const engine[VIEW_SIDES] = {"fastlsm", elastic ? scene.engine : "octree"};
+    if (elastic && scene.density == 0) /* as heavy on both sides */
+        scene.density = scene.meshless.material.density / pow(scene.metre, 3);
     if (make_body(&scene, body, &error)) {
         free(body);
         return refuse(&error);

@@ -1,7 +1,6 @@
 // app.js - the page's state: the scene's text, the engines and their pictures, and the frames.
 import { Camera } from 'view/camera';
 import { Picture, THEMES } from 'view/draw';
-import { SIDES } from 'view/engine';
 import { Film } from 'view/film';
 import { Hands } from 'view/hands';
 import { Inside } from 'view/inside';
@@ -81,9 +80,20 @@ export class App {
             this.engine.clearStages(side);
             view.querySelector('.absent').textContent = this.engine.absent(side);
         });
+        this.showNames();
         this.showSurfaces();
+        this.tools.opened();
         this.panel.fill();
         this.panel.show(this.meters);
+    }
+
+    // Whose the sides are.
+    showNames() {
+        this.views.forEach((view, side) => {
+            const name = this.engine.sideName(side);
+            for (const place of document.querySelectorAll(`[data-name='${side}']`)) place.textContent = name;
+            view.setAttribute('aria-label', `${name}. g takes hold, arrows turn the camera or pull.`);
+        });
     }
 
     showSurfaces() {
@@ -285,7 +295,7 @@ export class App {
     copyViews(copy) {
         const shown = this.engine.present();
         const time = (side) => (!shown.includes(side) ? ''
-            : `${SIDES[side]}, ${this.engine.figure(side, 'time').toFixed(2)} s`);
+            : `${this.engine.sideName(side)}, ${this.engine.figure(side, 'time').toFixed(2)} s`);
         const ink = getComputedStyle(document.body).color;
         copyWithCaptions(copy, $('canvas'), this.boxes(), [time(0), time(1)], ink);
     }

@@ -1,4 +1,4 @@
-// carry.js - FastLSM's surface by a vertex shader (carry.vert; fastlsm section 4): particles go up as a
+// carry.js - a lattice's surface by a vertex shader (carry.vert; fastlsm section 4): particles go up as a
 // texture, vertices and normals stay on the graphics card.
 import { link } from 'view/program';
 

@@ -42,9 +42,10 @@ export function drawLines(canvas, meters, key) {
     pen.fillText(short(top), 5, 12);
 }
 
-// A cell's bar: as long as the share; and the paper's, where it gives one.
-export function setBar(cell, share, paperPercent) {
+// A cell's bar: as long as the share, and what it is of where that is not the row's; and the paper's, where
+// it gives one.
+export function setBar(cell, share, of, paperPercent) {
     const paper = Number.isFinite(paperPercent) ? ` (paper ${paperPercent} %)` : '';
-    cell.textContent = Number.isFinite(share) ? `${Math.round(100 * share)} %${paper}` : '–';
+    cell.textContent = Number.isFinite(share) ? `${Math.round(100 * share)} %${of}${paper}` : '–';
     cell.style.setProperty('--share', `${Number.isFinite(share) ? 100 * share : 0}%`);
 }

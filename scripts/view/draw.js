@@ -93,14 +93,14 @@ export class Picture {
         this.maps = [makeMap(gl), makeMap(gl)];
         this.stones = new Mesh(gl);
         this.dots = new Mesh(gl);
-        this.carry = new Carry(gl, shaders['carry.vert']);
+        this.carries = [0, 1].map(() => new Carry(gl, shaders['carry.vert']));
         this.grounds = [];
     }
 
     // The scene's obstacles, and the ground under what is within `bounds` at rest.
     setScene(bounds, obstacles) {
         this.stones.set(meshObstacles(obstacles));
-        for (const one of [...this.bodies, this.carry]) one.version = undefined; // numbers of another scene
+        for (const one of [...this.bodies, ...this.carries]) one.version = undefined; // numbers of another scene
         this.inside?.opened();
         const middle = add(bounds.low, bounds.high).map((x) => x / 2);
         const reach = 0.5 * Math.hypot(...add(bounds.high, bounds.low, -1)) || 1;
@@ -129,7 +129,7 @@ export class Picture {
     carrySurface(side, carried, places) {
         const body = this.bodies[side];
         body.setTriangles(carried);
-        this.carry.run(carried, places, body.points, body.normals);
+        this.carries[side].run(carried, places, body.points, body.normals);
         this.inside?.moved(side);
     }
 

@@ -1,8 +1,9 @@
-// engine.js - the two engines in WebAssembly (bench/view/view.h): what they import, their strings,
-// and their numbers as arrays. A side is 0, FastLSM, or 1, the octree.
+// engine.js - the engines in WebAssembly (bench/view/view.h): what they import, their strings, and their
+// numbers as arrays. A side is 0, FastLSM, or 1, the octree or, where the scene is of one, an elastic body.
 import { Given } from 'view/given';
 
-export const SIDES = ['FastLSM', 'Octree'];
+const NAMES = { fastlsm: 'FastLSM', octree: 'Octree', meshless: 'Elastic body' };
+export const [ELASTIC, ABSENT] = [1, 2]; // of what a scene's text is (bench/view/stored_bodies.h)
 export const STAGES = ['fast sum', 'shape matching', 'polar', 'damping', 'other'];
 const FIGURES = [
     'particles', 'regions', 'links', 'broken', 'contacts', 'summationNodes', 'bytes', 'buildMs', 'time',
@@ -47,9 +48,10 @@ function makeSystem(memory) {
 }
 
 export class Engine {
-    // Makes the engines of the module's bytes.
-    static async create(bytes) {
+    // Makes the engines of the module's bytes; `bodies` are stored elastic ones.
+    static async create(bytes, bodies) {
         const engine = new Engine();
+        engine.bodies = bodies;
         engine.given = new Given(engine);
         engine.module = await WebAssembly.compile(bytes);
         await engine.restart();
@@ -66,6 +68,14 @@ export class Engine {
         this.held = new Set();
         this.given.forget();
         this.call._initialize?.();
+        this.lacking = this.bodies.map((body) => this.takeBody(body)).find((refused) => refused) ?? '';
+    }
+
+    // '', or the line that says why these bytes are no stored body.
+    takeBody(bytes) {
+        const at = this.call.view_stored_room(bytes.length);
+        new Uint8Array(this.call.memory.buffer).set(bytes, at);
+        return this.string(this.call.view_stored_take());
     }
 
     string(at) {
@@ -99,6 +109,13 @@ export class Engine {
         return '';
     }
 
+    // Whether a scene's text is of an elastic body, ELASTIC, and of one that the page has not got, ABSENT.
+    elastic(text) { return this.call.view_stored_for(this.give(text).length); }
+
+    // The name of a side's engine, and how people call it.
+    kind(side) { return this.string(this.call.view_engine(side)); }
+    sideName(side) { return NAMES[this.kind(side)]; }
+
     absent(side) { return this.string(this.call.view_absent(side)); }
     step(side, steps) { this.call.view_step(side, steps); }
 
@@ -111,6 +128,11 @@ export class Engine {
 
     figure(side, name) { return this.call.view_figure(side, FIGURES.indexOf(name)); }
     stages(side) { return STAGES.map((name, stage) => this.call.view_stage_ms(side, stage)); }
+    // What the side's engine calls a stage; null where it has no such.
+    stageName(side, stage) {
+        return this.string(this.call.view_stage_name(side, stage))?.replaceAll('_', ' ') ?? null;
+    }
+
     paperPercent(side, stage) { return this.call.view_paper_percent(side, stage); }
     clearStages(side) { this.call.view_clear_stages(side); }
 

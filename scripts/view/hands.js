@@ -1,5 +1,4 @@
 // hands.js - pointers and keys on the views: they pull the bodies, pin them, and move the camera.
-import { SIDES } from 'view/engine';
 import { add } from 'view/camera';
 import { pickHit, pickNear } from 'view/pick';
 
@@ -239,7 +238,7 @@ export class Hands {
             const box = this.app.views[side].getBoundingClientRect();
             const middle = { x: 0, y: 0, aspect: box.width / box.height, half: box.height / 2 };
             this.keyHold = this.take(side, middle, Infinity);
-            if (this.keyHold) this.app.say(`Holding ${SIDES[side]}: arrows move it, Enter lets go.`);
+            if (this.keyHold) this.app.say(`Holding ${this.app.engine.sideName(side)}: arrows move it, Enter lets go.`);
             return true;
         }
         if (!this.keyHold || event.target.closest('button, summary, a')) return false;

@@ -1,5 +1,4 @@
 // inside.js - the group "See inside": what of both bodies' inside is shown, and which particle's region.
-import { SIDES } from 'view/engine';
 import { short } from 'view/charts';
 import { CELL, InsideEngine } from 'view/inside_engine';
 import { InsidePicture, tones } from 'view/inside_draw';
@@ -186,6 +185,8 @@ export class Inside {
     }
 
     describe(side, mark) {
+        if (this.app.engine.kind(side) === 'meshless')
+            return `Node ${mark.particle}: it moves what is in its cover, where ${mark.count} nodes stand`;
         const [one, many] = side ? ['Node', 'nodes'] : ['Particle', 'particles'];
         let sums = `${mark.bars} bars in ${mark.plates} plates`;
         if (mark.nodes) sums = `${mark.nodes} summation nodes`;
@@ -205,7 +206,7 @@ export class Inside {
         if (this.most) {
             const [none, most] = ['0', `${short(this.most)} cells`]
                 .map((textContent) => make('span', { textContent }));
-            rows.push(make('span', { textContent: `Distance from ${SIDES[1 - side]}` }),
+            rows.push(make('span', { textContent: `Distance from ${this.app.engine.sideName(1 - side)}` }),
                 make('div', { className: 'ramp' }), make('div', { className: 'scale' }, none, most));
         }
         const key = `${theme.name} ${rows.map((row) => row.textContent)}`; // frames that change nothing

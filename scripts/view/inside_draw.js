@@ -48,6 +48,8 @@ class Instances {
     }
 }
 
+const hasGoal = (mark) => Number.isFinite(mark.goal[0]); // an elastic body's node has none
+
 // The lines from a particle to its goal, and those that show what sums its region: from, to, colour, width.
 function linesOf(mark, points, colours) {
     const lines = [];
@@ -60,7 +62,7 @@ function linesOf(mark, points, colours) {
         if (!bars[bar].length) plates[plate].push(bars[bar]);
         bars[bar].push(particle);
     }
-    add(at(mark.particle), mark.goal, colours.marked, 2.5);
+    if (hasGoal(mark)) add(at(mark.particle), mark.goal, colours.marked, 2.5);
     for (const plate of plates) { // round its bars' ends
         const ends = [...plate.map((bar) => bar[0]), ...plate.map((bar) => bar.at(-1)).reverse()];
         ends.forEach((end, i) => add(at(end), at(ends[(i + 1) % ends.length]), colours.plate, 1.5));
@@ -141,6 +143,7 @@ export class InsidePicture {
         const order = [...members.filter((particle) => particle !== mark.particle), mark.particle];
         const at = (particle) => [...points.subarray(3 * particle, 3 * particle + 3)];
         const places = new Float32Array([...order.flatMap(at), ...mark.goal]);
+        this.sides[side].goals = hasGoal(mark) ? 1 : 0;
         dots.set({ points: places, normals: places, indices: new Uint32Array(0) });
         Object.assign(this.sides[side], { members: order.length - 1, bars: mark.bars });
     }
@@ -234,7 +237,7 @@ export class InsidePicture {
     drawMark(side, scene) {
         const { gl, picture } = this;
         const { box, ratio, theme } = scene;
-        const { bars, dots, lines, members } = this.sides[side];
+        const { bars, dots, goals, lines, members } = this.sides[side];
         const colours = tones(theme);
         const dot = (...of) => this.drawDots(dots.array, scene, ...of);
         gl.clear(gl.DEPTH_BUFFER_BIT);
@@ -246,7 +249,7 @@ export class InsidePicture {
         gl.disable(gl.DEPTH_TEST);
         dot(this.pixels(scene, 0.5, 3, 8), colours.member, 0, members);
         dot(13 * ratio, colours.marked, members, 1);
-        dot(8 * ratio, colours.goal, members + 1, 1);
+        dot(8 * ratio, colours.goal, members + 1, goals);
         gl.enable(gl.DEPTH_TEST);
     }
 }

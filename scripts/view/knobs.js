@@ -57,7 +57,7 @@ function getUpper(text) {
     return edges ? Number(edges[1]) : undefined;
 }
 
-// Sliders: `log` ones move by powers of ten. `get` and `set` where it is not the plain setting `key`.
+// Sliders: `log` ones move by powers of ten; those of an `engine` are there where that is. `get` and `set` where it is not the plain setting `key`.
 export const SLIDERS = [
     { key: 'w', label: 'w, half-width of regions', least: 1, most: 8, by: 1, whole: true, start: 2 },
     { key: 'damping', label: 'Damping', least: 0, most: 1, by: 0.01, start: 0 },
@@ -74,16 +74,18 @@ export const SLIDERS = [
             const [x, , z] = getNumbers(text, 'gravity') ?? [0, 0, 0];
             return setSetting(text, 'gravity', `[${asReal(x)}, ${value}, ${asReal(z)}]`);
         } },
-    { key: 'epsilon', label: 'Octree: epsilon', least: 0, most: 2, by: 0.05, start: 0.5 },
-    { key: 'octree.levels', label: 'Octree: levels', least: 1, most: 6, by: 1, whole: true,
+    { key: 'meshless.young', engine: 'meshless', label: 'Elastic: Young\u2019s modulus, Pa', least: 1e4, most: 1e8,
+        log: true, start: 1e5 },
+    { key: 'epsilon', engine: 'octree', label: 'Octree: epsilon', least: 0, most: 2, by: 0.05, start: 0.5 },
+    { key: 'octree.levels', engine: 'octree', label: 'Octree: levels', least: 1, most: 6, by: 1, whole: true,
         hint: 'not set: up to 4', otherwise: 4 },
-    { key: 'octree.widths', label: 'Octree: w of the upper half, edges', least: 0.25, most: 4, by: 0.25,
+    { key: 'octree.widths', engine: 'octree', label: 'Octree: w of the upper half, edges', least: 0.25, most: 4, by: 0.25,
         hint: 'as below', otherwise: 1, set: setUpper,
         get: getUpper },
 ];
 export const CHOICES = [
-    { key: 'octree.weighting', label: 'Octree: weighting', of: ['conserving', 'plain'] },
-    { key: 'octree.criteria', label: 'Octree: cells split', of: Object.keys(SPLITS),
+    { key: 'octree.weighting', engine: 'octree', label: 'Octree: weighting', of: ['conserving', 'plain'] },
+    { key: 'octree.criteria', engine: 'octree', label: 'Octree: cells split', of: Object.keys(SPLITS),
         get: getSplits, set: setSplits },
     { key: 'summation', label: 'Summation', of: ['fast', 'bars', 'naive'] },
     { key: 'polar', label: 'Polar', of: ['fast', 'jacobi'] },

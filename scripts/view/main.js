@@ -1,15 +1,19 @@
 // main.js - starts the page: engines, buttons, the first scene, the loop of frames, and what tests use.
 import { App } from 'view/app';
-import { Engine } from 'view/engine';
+import { ABSENT, ELASTIC, Engine } from 'view/engine';
 import { Files } from 'view/files';
 import { fromBase64, saveFile, unzip } from 'view/share';
 
 const FIRST_SCENE = 'hand';
 const $ = (id) => document.getElementById(id);
 
+const WHAT = { [ELASTIC]: ' (elastic body)', [ABSENT]: ' (elastic body, not in this page)' };
+
 function wire(app) {
-    const names = app.engine.sceneNames();
-    $('scene').append(...['', ...names].map((name) => new Option(name || '(own text)', name, false)));
+    const { engine } = app;
+    const label = (name) => name + (WHAT[engine.elastic(engine.sceneText(name))] ?? '');
+    $('scene').append(new Option('(own text)', ''),
+        ...engine.sceneNames().map((name) => new Option(label(name), name, false)));
     $('scene').options[0].disabled = true;
     $('scene').addEventListener('change', () => app.visit(app.engine.sceneText($('scene').value)));
     const does = {
@@ -37,7 +41,7 @@ function wire(app) {
 // The link's scene, else the page's own, or that which drops its mesh, else the first; what was refused is
 // said. The page's mesh may be the link's, too.
 async function openFirst(app, { scene, mesh }) {
-    let [name, refused] = ['', ''];
+    let [name, refused] = ['', app.engine.lacking];
     try {
         if (mesh) name = app.files.take(mesh.name, await unzip(fromBase64(mesh.gzip), 'gzip'));
     } catch (error) {
@@ -55,7 +59,8 @@ async function openFirst(app, { scene, mesh }) {
 
 async function start() {
     const data = JSON.parse($('data').textContent);
-    const engine = await Engine.create(await unzip(fromBase64($('wasm').textContent), 'gzip'));
+    const bodies = await Promise.all(data.bodies.map((body) => unzip(fromBase64(body), 'gzip')));
+    const engine = await Engine.create(await unzip(fromBase64($('wasm').textContent), 'gzip'), bodies);
     const app = new App(engine, data.shaders);
     wire(app);
     app.files = new Files(app);

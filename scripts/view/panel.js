@@ -10,8 +10,8 @@ const round2 = (value) => Number(value.toPrecision(2));
 const FIGURES = [
     ['ms a step, in this browser', (m) => m.stepMs],
     ['ms a frame: its steps, surface', (m) => m.frameMs],
-    ['Particles', 'particles'], ['Regions', 'regions'], ['Links', 'links', 0],
-    ['Summation nodes a region', 'summationNodes', 1], ['Contacts', 'contacts'],
+    ['Particles', 'particles'], ['Regions', 'regions'], ['Links', 'links', ['fastlsm']],
+    ['Summation nodes a region', 'summationNodes', ['octree']], ['Contacts', 'contacts', ['fastlsm', 'octree']],
     ['Time simulated, s', 'time'], ['Kinetic energy, J', 'kinetic'], ['Momentum, kg·m/s', 'momentum'],
 ];
 
@@ -139,7 +139,11 @@ export class Panel {
 
     // Shows what the text says.
     fill() {
-        for (const knob of this.knobs) knob.fill(this.text);
+        const kinds = [0, 1].map((side) => this.app.engine.kind(side));
+        for (const knob of this.knobs) {
+            knob.element.hidden = knob.what.engine !== undefined && !kinds.includes(knob.what.engine);
+            knob.fill(this.text);
+        }
         if (document.activeElement !== this.box) this.box.value = this.text;
         this.refusal.textContent = '';
         const title = getString(this.text, 'title') ?? getSetting(this.text, 'mesh');
@@ -151,11 +155,14 @@ export class Panel {
         const shown = this.app.engine.present();
         FIGURES.forEach(([, what, only], row) => meters.forEach((meter, side) => {
             const value = typeof what === 'string' ? this.app.engine.figure(side, what) : what(meter);
-            const has = shown.includes(side) && (only === undefined || only === side);
+            const has = shown.includes(side) && (!only || only.includes(this.app.engine.kind(side)));
             this.rows[row][side].textContent = has ? short(value) : '–';
         }));
         this.bars.forEach((cells, stage) => meters.forEach((meter, side) => {
-            setBar(cells[side], meter.shares[stage], this.app.engine.paperPercent(side, stage));
+            const name = this.app.engine.stageName(side, stage);
+            const of = name === STAGES[stage] ? '' : `, ${name}`;
+            const share = name ? meter.shares[stage] : NaN;
+            setBar(cells[side], share, of, this.app.engine.paperPercent(side, stage));
         }));
         for (const key of ['kinetic', 'momentum']) drawLines(document.getElementById(key), meters, key);
     }
