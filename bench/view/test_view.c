@@ -506,6 +506,38 @@ TEST(hands_move_a_stored_body)
     assert_int_equal(view_may_cut(1), 0);
 }
 
+/* Hands that pull at random, to many times its size and against each other, and let go: it stays
+ * finite, and comes back. */
+TEST(a_stored_body_bears_wild_hands)
+{
+    needs_solver();
+    store_bar();
+    open_scene(bar);
+    unsigned long seed = 1;
+    double rest[3], to[3], cell = view_figure(1, VIEW_CELL), by[3];
+    int held[3] = {-1, -1, -1}, top = middle_of_bar();
+    vertex(1, top, rest);
+    for (int i = 0; i < 300; i++) {
+        int *hand = &held[i % 3];
+        if (i % 2) view_release(*hand);
+        seed = (seed * 48271ul) % 2147483647ul;
+        *hand =
+            view_grab(1, (int)(seed % (unsigned long)view_vertices(1)), (double)(seed % 20) * cell);
+        for (int d = 0; d < 3; d++) {
+            seed = (seed * 48271ul) % 2147483647ul;
+            by[d] = 20 * ((double)seed / 2147483647 - 0.5);
+        }
+        view_drag(*hand, by[0], by[1], by[2]);
+        view_step(1, 1);
+        assert_true(isfinite(view_figure(1, VIEW_KINETIC)));
+    }
+    for (int grip = 0; grip < 64; grip++) view_release(grip);
+    view_step(1, 2000);
+    vertex(1, top, to);
+    if (!(sqrt(sm_square_between(rest, to)) < cell))
+        fail_msg("%g cells from rest", sqrt(sm_square_between(rest, to)) / cell);
+}
+
 /* Of other handles or another mesh no body is stored; a damaged one is refused. */
 TEST(other_bodies_are_not_taken_for_it)
 {

@@ -14,6 +14,7 @@
 #include "stored.h"
 
 enum { MOST_POINTS = 128 };
+static const double MOST_TURN = 25; /* four turns; of stored bodies, which anybody pulls at */
 
 struct SmEngine {
     long count;        /* particles */
@@ -197,6 +198,7 @@ static void meshless_step(SmEngine *engine, SmLaps *laps)
 {
     take_impulses(engine);
     ref_motion_step(&engine->elastic.motion, engine->h);
+    if (engine->stored) ref_motion_confine(&engine->elastic.motion, MOST_TURN);
     sm_lap(laps, SM_SHAPE_MATCHING);
     place_particles(engine, true);
     sm_lap(laps, SM_OTHER);

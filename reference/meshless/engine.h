@@ -10,7 +10,7 @@
  * second node there: these move with it to 1e-6, and those between them as the body does, by a few
  * thousandths of its sag. Handles that are other ones than before cost a search for modes, as
  * create() does: bodies that are held have others than those that are free. A stored body keeps its
- * modes, whatever holds it. A cantilever of 1,000
+ * modes, whatever holds it, and is turned four times about at most. A cantilever of 1,000
  * nodes and 64 modes sags within 2% of theory; one held by a slab of two layers of nodes,
  * within 3.5%. */
 #ifndef REF_MESHLESS_ENGINE_H

@@ -11,6 +11,7 @@ import unittest
 try:
     import browser
     import numpy
+    from selenium.webdriver.common.action_chains import ActionChains
 except ImportError as missing:
     print(f"skipped: no {missing.name}: install chromium, chromium-driver, python3-selenium and python3-numpy")
     sys.exit(77)
@@ -69,6 +70,19 @@ class PageCase(unittest.TestCase):
     def figure(self, side, name):
         return self.ask("return shapebench.engine.figure(values[0], values[1])", side, name)
 
+    def away(self, side, before):
+        """How far a vertex is from where it was, at most, in cells."""
+        return numpy.abs(self.points(side) - before[side]).max() / self.figure(side, "cell")
+
+    def pull(self, at, by):
+        """Presses at a place of the window and moves, without letting go."""
+        chain = ActionChains(self.driver, duration=50)
+        chain.w3c_actions.pointer_action.move_to_location(round(at["x"]), round(at["y"]))
+        chain.w3c_actions.pointer_action.pointer_down()
+        chain.w3c_actions.pointer_action.move_to_location(round(at["x"]) + by[0], round(at["y"]) + by[1])
+        chain.perform()
+        self.ask("await new Promise((done) => requestAnimationFrame(() => setTimeout(done, 100)))")  # it is there
+
     def tearDown(self):
         self.assertEqual(self.driver.get_log("browser"), [], "messages on the console")
 
@@ -78,4 +92,26 @@ SETTLE = """
 for (let i = 0; i < 8; i++) await new Promise((done) => requestAnimationFrame(() => setTimeout(done, 30)));
 while (shapebench.busy()) await new Promise((done) => setTimeout(done, 20));
 shapebench.pause();
+"""
+
+# Where a vertex is in the window.
+WHERE = """
+const at = shapebench.project(values[0], values[1]);
+const canvas = document.getElementById('canvas'), box = canvas.getBoundingClientRect();
+return { x: box.left + at.x * box.width / canvas.width, y: box.top + at.y * box.height / canvas.height };
+"""
+
+GESTURES = """
+const e = shapebench.engine, held = [];
+let seed = 1;
+const random = () => (seed = (seed * 48271) % 2147483647) / 2147483647;
+for (let i = 0; i < values[0]; i++) {
+    const side = i % 2, count = e.surface(side).points.length / 3;
+    if (held.length < 3) held.push(e.grab(side, Math.floor(random() * count), random()));
+    e.drag(held[held.length - 1], [0, 1, 2].map(() => 20 * (random() - 0.5)));
+    e.step(side, 1);
+    if (random() < 0.3) e.release(held.shift());
+}
+held.forEach((grip) => e.release(grip));
+return [0, 1].every((side) => e.surface(side).points.every(Number.isFinite));
 """

@@ -406,6 +406,24 @@ void ref_motion_step(RefMotion *motion, double h)
     ref_motion_pose(motion);
 }
 
+void ref_motion_confine(RefMotion *motion, double most)
+{
+    double turn = 0;
+    bool finite = true;
+    for (int k = 0; k < motion->modes; k++)
+        finite &= isfinite(motion->z[k]) && isfinite(motion->speed[k]);
+    for (long n = 0; n < motion->nodes && finite; n++)
+        turn = fmax(turn, sm_dot(motion->rotation[n], motion->rotation[n]));
+    finite &= isfinite(turn);
+    if (finite && turn <= most * most) return;
+    double share = most / sqrt(turn);
+    for (int k = 0; k < motion->modes; k++) {
+        motion->z[k] = finite ? share * motion->z[k] : 0;
+        motion->speed[k] = finite ? share * motion->speed[k] : 0;
+    }
+    ref_motion_pose(motion);
+}
+
 double ref_motion_energy(const RefMotion *motion)
 {
     double sum = 0;

@@ -95,6 +95,13 @@ void ref_motion_take(const RefBody *body, RefMotion *from, double h, RefMotion *
  * can meet, are met as well as possible. Poses before it returns. O((nodes + rows^2) modes). */
 void ref_motion_step(RefMotion *motion, double h);
 
+/* Takes amplitudes and speeds back by one share where a node is turned by more than `most`, so that
+ * none is; poses then. Hands that pull a body to many times its size turn it so, and the rotations
+ * of warping mean nothing there: a turn of w moves its surroundings by w times their distance, and
+ * amplitudes would grow each time that another hand takes hold. What is not finite is put to rest.
+ */
+void ref_motion_confine(RefMotion *motion, double most);
+
 /* Kinetic and elastic energy of the modes: (z'^2 + lambda z^2) / 2. */
 double ref_motion_energy(const RefMotion *motion);
 

@@ -1,0 +1,223 @@
+"""Elastic bodies beside FastLSM: hands, pins, throws and knobs on them, what is seen of their inside, and the page
+that has none. That they move as the program's own do is test_page.py's."""
+import math
+
+import numpy
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.keys import Keys
+from selenium.webdriver.support.ui import Select
+
+from page_case import GESTURES, SETTLE, SIDES, WHERE, PageCase
+
+# The elastic beam, whose end stays where it is.
+STILL = "return shapebench.engine.sceneText('beam-elastic').replace('amplitude = 1.0', 'amplitude = 0.0')"
+
+
+class Elastic(PageCase):
+    def open_still(self, *changes):
+        """Opens the beam at rest under no gravity, or as `changes` have it."""
+        text = self.ask(STILL)
+        for old, new in changes or (("-9.81", "0.0"),):
+            self.assertIn(old, text)
+            text = text.replace(old, new)
+        self.assertFalse(self.ask("return shapebench.open(values[0], false)", text))
+        self.ask("shapebench.pause()")
+        self.driver.find_element("id", "look").click()
+        return text
+
+    def step(self, steps):
+        """Without drawing what is between."""
+        self.ask("for (const side of [0, 1]) shapebench.engine.step(side, values[0])", steps)
+
+    def middle(self, side):
+        """The vertex in the middle of the beam's upper face."""
+        points = self.points(side)
+        return int((points[:, 1] - numpy.abs(points[:, 0]) - numpy.abs(points[:, 2])).argmax())
+
+    def test_the_menu_says_what_they_are(self):
+        names = [option.text for option in Select(self.driver.find_element("id", "scene")).options]
+        for name in ("beam-elastic (elastic body)", "balljoint (elastic body)",
+                     "rabbit (elastic body, not in this page)", "penguin"):
+            self.assertIn(name, names)
+        for scene, name in (("beam-elastic", "Elastic body"), ("hand", "Octree")):
+            self.open(scene)
+            seen = {place.text for place in self.driver.find_elements("css selector", "[data-name='1']")}
+            self.assertEqual(seen, {name})
+            view = self.driver.find_element("id", "view-1").get_attribute("aria-label")
+            self.assertTrue(view.startswith(name), view)
+
+    def test_one_that_is_not_there_is_said_to_be_so(self):
+        self.open("rabbit")
+        self.assertIn("found when the page is built", self.ask("return shapebench.engine.absent(1)"))
+        self.assertFalse(self.ask("return shapebench.engine.absent(0)"))
+        self.ask("shapebench.advance(5)")
+        self.assertAlmostEqual(self.figure(0, "time"), 0.05)
+        text = self.ask(STILL).replace("box_high = [0.05", "box_high = [0.2")  # held elsewhere: other modes
+        self.assertFalse(self.ask("return shapebench.open(values[0], false)", text))
+        self.assertIn("found when the page is built", self.ask("return shapebench.engine.absent(1)"))
+
+    def test_damaged_ones_are_refused(self):
+        said = self.ask("""
+            const { engine } = shapebench, [body] = engine.bodies, other = body.slice(), old = body.slice();
+            other[body.length >> 1] ^= 1;
+            old['shapebench elastic body '.length] = '0'.charCodeAt(0);
+            return [other, body.slice(0, -9), new Uint8Array(5), old, body].map((one) => engine.takeBody(one));""")
+        for line, words in zip(said, ("damaged", "damaged", "no stored", "another version", "")):
+            self.assertIn(words, line)
+        self.assertEqual(said[-1], "")
+
+    def test_a_drag_moves_both(self):
+        """What is dragged is where the pointer is, on both sides, and comes back to rest."""
+        self.open_still(("-9.81", "0.0"), ("damping = 0.02", "damping = 0.1"))
+        before = [self.points(side) for side in (0, 1)]
+        for side in (0, 1):
+            top = self.middle(side)
+            at = self.ask(WHERE, side, top)
+            self.pull(at, (30, -40))
+            self.ask("shapebench.advance(30)")
+            now = self.ask(WHERE, side, top)
+            self.assertLess(abs(now["x"] - at["x"] - 30) + abs(now["y"] - at["y"] + 40), 6, SIDES[side])
+            moved = [self.away(s, before) for s in (0, 1)]
+            self.assertGreater(moved[1 - side], 0.5 * moved[side], "the other side stays behind")
+            ActionChains(self.driver).release().perform()
+            self.step(600)
+            for s in (0, 1):
+                self.assertLess(self.away(s, before), 0.05, f"{SIDES[s]} has not come back")
+
+    def test_a_pin_stays_and_a_throw_goes_on(self):
+        self.open_still(("-9.81", "0.0"), ("young = 1.0e6", "young = 1.0e4"))
+        top, cell = self.middle(1), self.figure(1, "cell")
+        grip = self.ask("return shapebench.engine.grab(1, values[0], 2 * values[1])", top, cell)
+        start = self.points(1)[top]
+        for step in range(1, 6):  # thrown upwards: let go at this speed it goes on
+            self.ask("shapebench.engine.drag(values[0], [0, values[1], 0]); shapebench.advance(1)", grip, 0.2 * step * cell)
+        pinned = self.points(1)[top]
+        self.assertLess(abs(pinned[1] - start[1] - cell), 0.2 * cell)
+        self.ask("shapebench.engine.release(values[0]); shapebench.advance(1)", grip)
+        self.assertGreater(self.points(1)[top][1] - pinned[1], 0.1 * cell)
+        grip = self.ask("return shapebench.engine.grab(1, values[0], 2 * values[1])", top, cell)
+        pinned = self.points(1)[top]
+        self.step(100)
+        self.assertLess(numpy.abs(self.points(1)[top] - pinned).max(), 0.3 * cell)
+        self.ask("shapebench.engine.release(values[0])", grip)
+
+    def test_random_gestures_stay_finite(self):
+        for name in ("beam-elastic", "balljoint"):
+            self.open(name)
+            self.assertTrue(self.ask(GESTURES, 400), name)
+
+    def test_youngs_modulus_is_exact(self):
+        """Sag goes as its inverse, frequency as its root; a knob that is turned leaves motion as it was."""
+        text = self.open_still(("amplitude", "amplitude"))  # with gravity
+        top = self.middle(1)
+        rest = self.ask("return Array.from(shapebench.inside.data.rest(1).points)")[3 * top + 1]
+        self.step(1500)
+        sag = rest - self.points(1)[top][1]
+        before = self.points(1)
+        stiff = text.replace("young = 1.0e6", "young = 4.0e6")
+        self.assertFalse(self.ask("return shapebench.open(values[0], true)", stiff))
+        self.ask("shapebench.pause()")
+        self.assertLess(self.away(1, {1: before}), 0.01)
+        self.step(1500)
+        self.assertAlmostEqual((rest - self.points(1)[top][1]) / sag, 0.25, delta=0.005)
+        periods = [self.period(value) for value in ("1.0e6", "4.0e6")]
+        self.assertAlmostEqual(periods[0] / periods[1], 2, delta=0.1)
+
+    def period(self, young):
+        """Of the beam's swinging in its middle after gravity is turned on, in steps of 2 ms."""
+        self.open_still(("young = 1.0e6", f"young = {young}"), ("h = 0.01", "h = 0.002"), ("damping = 0.02", "damping = 0.0"))
+        heights = self.ask("""
+            const { engine } = shapebench, heights = [];
+            for (let i = 0; i < 150; i++) {
+                engine.step(1, 1);
+                heights.push(engine.surface(1).points[3 * values[0] + 1]);
+            }
+            return heights;""", self.middle(1))
+        lows = [i for i in range(1, 149) if heights[i] < heights[i - 1] and heights[i] <= heights[i + 1]]
+        return lows[0]
+
+    def test_knobs_that_are_not_there_are_hidden(self):
+        self.open("beam-elastic")
+        shown = {knob.get_attribute("id") for knob in
+                 self.driver.find_elements("css selector", "#knobs input, #knobs select") if knob.is_displayed()}
+        self.assertIn("knob-meshless-young", shown)
+        self.assertFalse([name for name in shown if "octree" in name or "epsilon" in name])
+        touch = self.driver.find_element("css selector", "#tools [value=touch]")
+        self.assertFalse(touch.is_enabled())
+        for name in sorted(shown):  # each of them does something, and nothing is refused
+            before = self.ask("return shapebench.text()")
+            knob = self.driver.find_element("id", name)
+            knob.send_keys(Keys.ARROW_DOWN if knob.tag_name == "select" else Keys.ARROW_LEFT * 3)
+            after = self.ask(CHANGED, before)
+            self.assertIsNotNone(after, name)
+            self.assertFalse(self.driver.find_element("id", f"{name}-note").text, name)
+            self.assertFalse(self.ask("return shapebench.engine.absent(1)"), name)
+            self.ask("shapebench.advance(5)")
+            self.assertTrue(math.isfinite(self.figure(1, "kinetic")), name)
+        self.open("hand")
+        self.assertTrue(touch.is_enabled())
+        self.assertFalse(self.driver.find_element("id", "knob-meshless-young").is_displayed())
+
+    def test_a_tool_goes_with_its_engine(self):
+        """A hand that touches pulls where nothing gets finer; one that cuts says that FastLSM alone is cut."""
+        self.open("hand")
+        self.driver.find_element("css selector", "#tools [value=touch]").click()
+        self.open("beam-elastic")
+        self.assertTrue(self.driver.find_element("css selector", "#tools [value=pull]").is_selected())
+        self.driver.find_element("css selector", "#tools [value=cut]").click()
+        self.ask(SETTLE)
+        self.assertIn("FastLSM alone is cut", self.driver.find_element("id", "status").text)
+        self.assertEqual(self.ask("return [0, 1].map((side) => shapebench.engine.mayCut(side))"), [True, False])
+        self.driver.find_element("css selector", "#tools [value=pull]").click()
+
+    def test_its_inside(self):
+        """Nodes move with the body; the cover of one is as wide as the octants that it is of, and says what it holds."""
+        self.open("beam-elastic")
+        self.ask("shapebench.advance(20)")
+        nodes = numpy.array(self.ask("return [...shapebench.inside.data.points(1)]")).reshape(-1, 3)
+        self.assertEqual(len(nodes), self.figure(1, "particles"))
+        skin = self.points(1)
+        self.assertTrue((nodes > skin.min(axis=0)).all() and (nodes < skin.max(axis=0)).all())
+        middle = int(numpy.abs(nodes - nodes.mean(axis=0)).sum(axis=1).argmin())
+        mark = self.ask("const m = shapebench.inside.data.mark(1, values[0]); return { count: m.count, boxes: [...m.boxes], "
+                        "members: [...m.members] }", middle)
+        box = numpy.array(mark["boxes"][:24]).reshape(8, 3)
+        edges = [numpy.linalg.norm(box[1 << d] - box[0]) for d in range(3)]
+        self.assertLess(max(edges) - min(edges), 1e-6)
+        members = nodes[mark["members"][::3]]
+        self.assertIn(middle, mark["members"][::3])
+        self.assertEqual(len(members), mark["count"])
+        self.assertGreaterEqual(mark["count"], 27)
+        self.assertLess(numpy.abs(members - nodes[middle]).max(), 0.75 * max(edges))
+        numpy.testing.assert_allclose(box.mean(axis=0), nodes[middle], atol=1e-6)
+        for name in ("lattice", "region", "rest", "difference"):
+            self.driver.find_element("id", f"inside-{name}").click()
+        view = self.driver.find_element("id", "view-1")
+        view.click()
+        view.send_keys("i")
+        self.ask("shapebench.advance(1)")
+        words = self.driver.find_element("css selector", "#view-1 .marked").text
+        self.assertRegex(words, r"^Node \d+: it moves what is in its cover, where \d+ nodes stand$")
+        for name in ("lattice", "region", "rest", "difference"):
+            self.driver.find_element("id", f"inside-{name}").click()
+        self.ask("shapebench.advance(1)")
+
+    def test_its_figures(self):
+        self.open("beam-elastic")
+        self.ask("shapebench.advance(60)")
+        cells = [cell.text for cell in self.driver.find_elements("css selector", "#stages td:nth-child(3)")]
+        self.assertRegex(cells[1], r"^\d+ %, motion$")
+        self.assertRegex(cells[4], r"^\d+ %, skin$")
+        self.assertEqual([cells[0], *cells[2:4]], ["–"] * 3)
+        mass = 0.56 * 0.12 * 0.12 * 1000  # of the beam, kg, on both sides
+        for side in (0, 1):
+            energy, momentum = self.figure(side, "kinetic"), self.figure(side, "momentum")
+            self.assertTrue(0 < momentum ** 2 <= 2 * 1.05 * mass * energy, SIDES[side])  # Cauchy and Schwarz
+
+
+CHANGED = """
+for (let i = 0; i < 100 && (shapebench.text() === values[0] || shapebench.busy()); i++)
+    await new Promise((done) => setTimeout(done, 30));
+shapebench.pause();
+return shapebench.text() === values[0] ? null : shapebench.text();
+"""
