@@ -247,5 +247,3 @@ TEST(what_is_no_stored_body_is_refused)
     ref_stored_free(&stored);
     scene_free(&scene);
 }
-
-TEST_GROUP(NULL, NULL)

@@ -67,8 +67,9 @@ class Elastic(PageCase):
         self.assertEqual(said[-1], "")
 
     def test_a_drag_moves_both(self):
-        """What is dragged is where the pointer is, on both sides, and comes back to rest."""
-        self.open_still(("-9.81", "0.0"), ("damping = 0.02", "damping = 0.1"))
+        """What is dragged is where the pointer is, on both sides, and the elastic body comes back to rest (FastLSM
+        swings for minutes)."""
+        self.open_still()
         before = [self.points(side) for side in (0, 1)]
         for side in (0, 1):
             top = self.middle(side)
@@ -81,25 +82,30 @@ class Elastic(PageCase):
             self.assertGreater(moved[1 - side], 0.5 * moved[side], "the other side stays behind")
             ActionChains(self.driver).release().perform()
             self.step(600)
-            for s in (0, 1):
-                self.assertLess(self.away(s, before), 0.05, f"{SIDES[s]} has not come back")
+            self.assertLess(self.away(1, before), 0.01, "has not come back")
+            self.ask("shapebench.open(shapebench.text(), false)")
 
-    def test_a_pin_stays_and_a_throw_goes_on(self):
+    def pulled(self, steps, wait):
+        """How fast the beam's middle goes upwards in the step after a hand let it go that had pulled it in so many
+        steps and then waited; cells a step."""
         self.open_still(("-9.81", "0.0"), ("young = 1.0e6", "young = 1.0e4"))
         top, cell = self.middle(1), self.figure(1, "cell")
-        grip = self.ask("return shapebench.engine.grab(1, values[0], 2 * values[1])", top, cell)
         start = self.points(1)[top]
-        for step in range(1, 6):  # thrown upwards: let go at this speed it goes on
-            self.ask("shapebench.engine.drag(values[0], [0, values[1], 0]); shapebench.advance(1)", grip, 0.2 * step * cell)
-        pinned = self.points(1)[top]
-        self.assertLess(abs(pinned[1] - start[1] - cell), 0.2 * cell)
-        self.ask("shapebench.engine.release(values[0]); shapebench.advance(1)", grip)
-        self.assertGreater(self.points(1)[top][1] - pinned[1], 0.1 * cell)
         grip = self.ask("return shapebench.engine.grab(1, values[0], 2 * values[1])", top, cell)
-        pinned = self.points(1)[top]
-        self.step(100)
-        self.assertLess(numpy.abs(self.points(1)[top] - pinned).max(), 0.3 * cell)
+        for step in range(1, steps + 1):
+            self.ask("shapebench.engine.drag(values[0], [0, values[1], 0])", grip, step / steps * cell)
+            self.step(1)
+        self.step(wait)
+        held = self.points(1)[top]
+        self.assertLess(numpy.abs(held - start - [0, cell, 0]).max(), 0.2 * cell)
         self.ask("shapebench.engine.release(values[0])", grip)
+        self.step(1)
+        return (self.points(1)[top] - held)[1] / cell
+
+    def test_a_pin_stays_and_a_throw_goes_on(self):
+        """A hand that waits holds what it has; what is let go in its motion goes on, else it goes back."""
+        self.assertGreater(self.pulled(5, 0), 0.01)
+        self.assertLess(self.pulled(5, 200), -0.01)
 
     def test_random_gestures_stay_finite(self):
         for name in ("beam-elastic", "balljoint"):

@@ -368,3 +368,29 @@ TEST(constraints_that_cannot_hold)
     }
     beam_free(&beam);
 }
+
+/* Amplitudes that turn nodes too far are taken back by one share; what is not finite, to none. */
+TEST(turned_too_far)
+{
+    needs_solver();
+    static const RefDamping some = {1, 1e-3};
+    Beam beam = beam_create(true, &some);
+    RefMotion *motion = &beam.motion;
+    double before[MODES], turn = 0;
+    for (int k = 0; k < MODES; k++) motion->z[k] = before[k] = 300 + k;
+    motion->speed[2] = 7;
+    ref_motion_pose(motion);
+    for (long n = 0; n < motion->nodes; n++)
+        turn = fmax(turn, sqrt(sm_dot(motion->rotation[n], motion->rotation[n])));
+    ref_motion_confine(motion, 2 * turn);
+    assert_memory_equal(motion->z, before, sizeof before);
+    ref_motion_confine(motion, turn / 3);
+    for (int k = 0; k < MODES; k++) assert_true(fabs(motion->z[k] / before[k] - 1.0 / 3) < 1e-12);
+    assert_true(fabs(motion->speed[2] / 7 - 1.0 / 3) < 1e-12);
+    motion->z[3] = NAN;
+    ref_motion_pose(motion);
+    ref_motion_confine(motion, turn);
+    for (int k = 0; k < MODES; k++) assert_true(motion->z[k] == 0 && motion->speed[k] == 0);
+    assert_true(isfinite(motion->moved[0][0]));
+    beam_free(&beam);
+}

@@ -58,5 +58,3 @@ TEST(matrices_that_are_not_so_are_told)
         assert_false((plain ? plain_any : ref_dense_any)(2, none, b));
     }
 }
-
-TEST_GROUP(NULL, NULL)
