@@ -103,15 +103,13 @@ unsigned char *ref_stored_write(const RefStored *stored, size_t *size)
 {
     RefStored copy = *stored; /* which passes only read */
     Pass p = {0};
-    size_t words = strlen(version), key = strlen(stored->key);
+    size_t lines = strlen(version) + strlen(stored->key) + 1;
     pass_head(&p, &copy);
     pass_arrays(&p, &copy);
-    *size = words + key + 1 + p.at + sizeof(uint64_t);
+    *size = lines + p.at + sizeof(uint64_t);
     unsigned char *bytes = sm_alloc(*size, 1);
-    memcpy(bytes, version, words);
-    memcpy(bytes + words, stored->key, key);
-    bytes[words + key] = '\n';
-    p = (Pass){.to = bytes, .at = words + key + 1};
+    snprintf((char *)bytes, *size, "%s%s\n", version, stored->key);
+    p = (Pass){.to = bytes, .at = lines};
     pass_head(&p, &copy);
     pass_arrays(&p, &copy);
     uint64_t hash = sm_hash_bytes(SM_HASH_START, bytes, p.at);
