@@ -419,12 +419,12 @@ static void store_bar(void)
     if (view_stored_for((int)strlen(bar)) == 2) free(play_bar(0, &vertices));
 }
 
-/* A stored body beside FastLSM: after a hundred steps it is where the program has the body, to the
+/* A stored body beside FastLSM: after 120 steps it is where the program has the body, to the
  * rounding of the modes, which are stored in single precision. */
 TEST(a_stored_body_plays_the_scene)
 {
     needs_solver();
-    enum { STEPS = 100 };
+    enum { STEPS = 120 };
     long vertices;
     strcpy(view_room((int)strlen(bar)), bar);
     double(*wanted)[3] = play_bar(STEPS, &vertices), most = 0;

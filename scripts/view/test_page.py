@@ -33,7 +33,7 @@ class Page(PageCase):
     def test_steps_are_the_programs(self):
         """A hundred steps and more of a scene's own engine, surface against surface, in cells."""
         for name, frames, side in (("penguin", 25, 0), ("beam", 7, 0), ("hand-sampled", 50, 1), ("liver-drop", 25, 0),
-                                   ("beam-elastic", 100, 1), ("balljoint", 100, 1)):
+                                   ("beam-elastic", 120, 1), ("balljoint", 120, 1)):
             with self.subTest(name), tempfile.TemporaryDirectory() as folder:
                 path = os.path.join(folder, "out.vtkhdf")
                 subprocess.run([PROGRAM, "run", name, "--frames", str(frames), "-o", path], check=True,
