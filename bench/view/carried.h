@@ -1,7 +1,7 @@
-/* carried.h - what carries the surface of FastLSM, for a vertex shader that interpolates it
- * (fastlsm section 4, eqs. 15 to 17), as lib/voxel/embed.h does here: with particles i of a
- * vertex's cell, x = x_0 + sum_i phi_i (x_i - x_0),   normal along (sum_i u_i (x_i - x_0)) x (sum_i
- * v_i (x_i - x_0)).
+/* carried.h - what carries the surface of FastLSM, and of an elastic body, whose surface a
+ * lattice's corners carry, too, for a vertex shader that interpolates it (fastlsm section 4, eqs.
+ * 15 to 17), as lib/voxel/embed.h does here: with particles i of a vertex's cell, x = x_0 + sum_i
+ * phi_i (x_i - x_0),   normal along (sum_i u_i (x_i - x_0)) x (sum_i v_i (x_i - x_0)).
  *
  * Pointers stay valid until the next call that steps, changes or opens. */
 #ifndef BENCH_CARRIED_H

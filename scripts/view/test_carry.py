@@ -5,11 +5,12 @@ from page_case import PageCase
 class Carry(PageCase):
     def test_the_shader_moves_vertices_as_the_processor_does(self):
         """To the rounding of single precision, in a step of several scenes."""
-        for scene, frames in (("penguin", 40), ("hand", 20), ("penguins-collide", 10), ("statue-shell", 2)):
+        for scene, frames, side in (("penguin", 40, 0), ("hand", 20, 0), ("penguins-collide", 10, 0), ("statue-shell", 2, 0),
+                                    ("beam-elastic", 20, 1)):
             with self.subTest(scene):
                 self.open(scene)
                 self.ask("shapebench.advance(values[0])", frames)
-                away, turned, times = self.ask(COMPARE)
+                away, turned, times = self.ask(COMPARE, side)
                 self.assertLess(away, 1e-5, "of the scene's size")
                 self.assertLess(turned, 2e-3)
                 print(f"{scene}: {away:.1e} of its size, normals {turned:.1e}; ms by shader {times[0]:.2f}, "
@@ -26,12 +27,12 @@ class Carry(PageCase):
 
 COMPARE = """
 const { engine } = shapebench, choice = document.getElementById('carrier');
-const by = (value) => { choice.value = value; shapebench.showSurface(0); return shapebench.drawn(0); };
+const by = (value) => { choice.value = value; shapebench.showSurface(values[0]); return shapebench.drawn(values[0]); };
 const time = (value) => {
     choice.value = value;
     const begin = performance.now();
-    for (let i = 0; i < 10; i++) shapebench.showSurface(0);
-    shapebench.drawn(0);
+    for (let i = 0; i < 10; i++) shapebench.showSurface(values[0]);
+    shapebench.drawn(values[0]);
     return (performance.now() - begin) / 10;
 };
 const [one, two] = [by('shader'), by('processor')];
