@@ -8,6 +8,7 @@
 #include "../lib/error.h"
 #include "../lib/printable.h"
 #include "cli/command.h"
+#include "cli/completion.h"
 #include "scene/scene.h"
 #include "settings/command_line.h"
 #include "system/interrupt.h"
@@ -16,8 +17,8 @@
 static const BenchCommand *const commands[] = {
     &bench_command_tables,    &bench_command_claims,  &bench_command_sweep,  &bench_command_merge,
     &bench_command_calibrate, &bench_command_regress, &bench_command_report, &bench_command_kernels,
-    &bench_command_simulate,  &bench_command_info,    &bench_command_scenes};
-enum { COMMANDS = sizeof commands / sizeof commands[0] };
+    &bench_command_simulate,  &bench_command_info,    &bench_command_scenes, NULL};
+enum { COMMANDS = sizeof commands / sizeof commands[0] - 1 };
 
 static const char help_start[] =
     "Reference implementation and benchmark harness for shape-matching deformation.\n"
@@ -38,7 +39,7 @@ static void write_help(char *help, size_t room)
 {
     snprintf(help, room, "%s", help_start);
     for (int i = 0; i < COMMANDS; i++)
-        sm_append(help, room, "  %-9s %s\n", commands[i]->name, commands[i]->summary);
+        sm_append(help, room, "  %-9s  %s\n", commands[i]->name, commands[i]->summary);
     sm_append(help, room, "%s", help_end);
 }
 
@@ -101,6 +102,10 @@ int main(int argc, char **argv)
     argv[0] = program;
     argp_err_exit_status = SM_USAGE;
     bench_interrupt_catch();
+    if (argc > 1 && !strcmp(argv[1], "complete")) { /* asked by shells, and in no list */
+        bench_complete(stdout, commands, argc - 2, argv + 2);
+        return SM_OK;
+    }
     argc = ask_for_help(argc, argv);
 
     int first = argc;

@@ -55,7 +55,8 @@ int main(void) { return gsl_linalg_SV_decomp_jacobi((gsl_matrix *)0, 0, 0); }]]
   endif()
   return()
 endif()
-set(pc_needs "assimp, gsl") # shapebench.pc.in
+# shapebench.pc.in. Not Requires: a program linked with the shared library needs none of their headers.
+set(pc_needs ${ASSIMP_LDFLAGS} ${GSL_LDFLAGS})
 
 pkg_search_module(MPI QUIET mpi-c ompi-c mpich)
 optional_library(mpi [[
@@ -79,8 +80,7 @@ int main(void) { dpstrf_(); return dsaupd_c != 0 && cholmod_start(0); }]]
   LIBRARIES ${ARPACK_LINK_LIBRARIES} ${CHOLMOD_LIBRARY} ${LAPACK_LIBRARY})
 if(has_modes) # sources that are not compiled
   set(sources_left_out modes_absent)
-  string(APPEND pc_needs ", arpack")
-  set(pc_modes_libraries " -lcholmod -llapack")
+  list(APPEND pc_needs ${ARPACK_LDFLAGS} -lcholmod -llapack)
 else()
   set(sources_left_out modes|solver)
 endif()
@@ -93,6 +93,6 @@ int main(void) { return seccomp_load(seccomp_init(SCMP_ACT_ALLOW)); }]]
   INCLUDES ${SECCOMP_INCLUDE_DIRS} LIBRARIES ${SECCOMP_LINK_LIBRARIES}
   USED_BY lib/system/confine.c SHAPEBENCH_SECCOMP)
 if(has_seccomp)
-  string(APPEND pc_needs ", libseccomp")
+  list(APPEND pc_needs ${SECCOMP_LDFLAGS})
 endif()
 string(APPEND sources_left_out |import_absent|references_absent|elastic_absent|dense_plain)

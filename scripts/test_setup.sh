@@ -22,7 +22,7 @@ asked() {
     grep ' install ' "$folder/asked"
 }
 
-for what in run test pictures view film; do
+for what in run package test pictures view film; do
     asked "$what" | grep -q -- ' --no-remove ' || { echo "$what: apt-get may remove packages"; exit 1; }
 done
 touch "$folder/vtk/vtk.py"

@@ -153,7 +153,10 @@ if(NOT SHAPEBENCH_SANITIZE AND NOT SHAPEBENCH_CORE)
   add_script_test(columns test_columns.sh $<TARGET_FILE:shapebench>)
   add_script_test(optional test_optional.sh)
   add_script_test(setup test_setup.sh)
-  add_script_test(install test_install.sh ${CMAKE_BINARY_DIR})
+  foreach(what install package version man completions)
+    add_script_test(${what} test_${what}.sh ${CMAKE_BINARY_DIR})
+  endforeach()
+  add_script_test(dockerfile test_dockerfile.sh)
   add_script_test(render test_render.sh $<TARGET_FILE:shapebench>)
   foreach(what brute_force damage writers scenes) # more on request: --particles, --rounds, --seconds
     add_script_test(${what} test_${what}.py $<TARGET_FILE:shapebench>)
@@ -171,7 +174,7 @@ endif()
 
 # These start first, of any instruction set and precision, so that none is alone in the end.
 set(long "bench_(calibrate|regress|kernels|sweep_run|points|gap|threads|command|experiment)|meshless_engine"
-  "fastlsm_(fastlsm|fracture)|octree_octree|lib_shape|render|brute_force|damage|writers|scenes|report|install|documents|page")
+  "fastlsm_(fastlsm|fracture)|octree_octree|lib_shape|render|brute_force|damage|writers|scenes|report|install|package|documents|page")
 list(JOIN long "|" long)
 get_property(tests DIRECTORY PROPERTY TESTS)
 foreach(test ${tests})

@@ -70,8 +70,10 @@ static SmCode perform(void *record, int argc, char **argv, SmError *error)
     fflush(NULL);
     execv(PYTHON, (char *const *)word);
     free(word);
-    return sm_fail(error, SM_INPUT, "%s cannot be started (%s): scripts/setup installs it", PYTHON,
-                   strerror(errno));
+    return sm_fail(
+        error, SM_INPUT,
+        "%s cannot be started (%s): install python3-h5py, python3-matplotlib, python3-jinja2",
+        PYTHON, strerror(errno));
 }
 
 static const Options defaults = {.output = "report.html", .title = "shapebench report"};

@@ -78,7 +78,7 @@ static const BenchSetting settings[] = {
          "Also store, for every point of the surface and frame: displacement (12 bytes), "
          "speed, strain (largest in the surface), piece (of material), level (of the octree's "
          "leaf; 4 bytes each); several with commas between them"),
-     BENCH_IN(Options, fields), .take = take_fields},
+     BENCH_IN(Options, fields), .take = take_fields, BENCH_CHOICES(bench_field_names)},
     {0},
 };
 
@@ -484,7 +484,7 @@ const BenchCommand bench_command_simulate = {
     .name = "run",
     .summary = "simulate a scene or a mesh and write its motion",
     .line = {settings, BENCH_TAKES_ALL, "SCENE|FILE.cfg|MESH|POINTS", help, check, .most = 1,
-             .limit = "One scene or mesh only"},
+             .offers = bench_scene_names, .limit = "One scene or mesh only"},
     .size = sizeof(Options),
     .perform = perform,
 };

@@ -37,7 +37,7 @@ static void check(const struct argp_state *state, void *record)
 
 static const char help[] =
     "List the built-in scenes and shapes; with NAME, print that scene's file, which can be copied, "
-    "edited (--settings explains what it says) and run:\n"
+    "edited (--settings explains what it says) and run.\n"
     "  shapebench scenes penguin > my.cfg\n"
     "  shapebench run my.cfg\v" BENCH_EXIT_CODES;
 
@@ -123,7 +123,8 @@ static SmCode perform(void *record, int argc, char **argv, SmError *error)
 const BenchCommand bench_command_scenes = {
     .name = "scenes",
     .summary = "list the built-in scenes, or print one to copy and edit",
-    .line = {settings, 0, "[NAME]", help, check, .most = 1, .limit = "One NAME only"},
+    .line = {settings, 0, "[NAME]", help, check, .most = 1, .offers = bench_scene_names,
+             .limit = "One NAME only"},
     .size = sizeof(Options),
     .perform = perform,
 };

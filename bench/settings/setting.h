@@ -49,6 +49,8 @@ typedef struct BenchSetting {
                                              * all); of a group: as whom it is read */
     unsigned of;                            /* engines that alone have it: BENCH_OF_... */
     bool measuring;                         /* says what to measure (BenchCommon.measuring) */
+    const char *const *(*offers)(void);     /* values that a shell completes (completion.h), where
+                                             * others are as good; NULL: the choices */
     void (*take)(const struct argp_state *state, const char *text,
                  void *member); /* the option's
                                  * value, where it is none of these kinds */

@@ -60,8 +60,8 @@
 extern "C" {
 #endif
 
-#define SHAPEBENCH_VERSION_MAJOR 0
-#define SHAPEBENCH_VERSION_MINOR 1
+#define SHAPEBENCH_VERSION_MAJOR 1
+#define SHAPEBENCH_VERSION_MINOR 0
 #define SHAPEBENCH_VERSION_PATCH 0
 #define SHAPEBENCH_VERSION                                                                         \
     (SHAPEBENCH_VERSION_MAJOR * 10000 + SHAPEBENCH_VERSION_MINOR * 100 + SHAPEBENCH_VERSION_PATCH)
@@ -84,7 +84,7 @@ typedef struct {
 
 /* ---- the library */
 
-/* SHAPEBENCH_VERSION of the library that the program runs with, and as text, "0.1.0". */
+/* SHAPEBENCH_VERSION of the library that the program runs with, and as text, "1.0.0". */
 int sb_version(void);
 const char *sb_version_text(void);
 
