@@ -1,6 +1,5 @@
 #include "regression.h"
 
-#include <gsl/gsl_statistics.h>
 #include <jansson.h>
 #include <math.h>
 #include <stdarg.h>
@@ -11,6 +10,7 @@
 #include "../../lib/printable.h"
 #include "../store/export.h"
 #include "../system/statistic.h"
+#include "../table/gbench.h"
 #include "../table/grid.h"
 
 const char *const bench_regression_formats[] = {"text",  "markdown", "json",
@@ -51,22 +51,15 @@ static void compare_flags(BenchRegression *found)
                                 only_old[0] ? only_old : " none", only_new[0] ? only_new : " none");
 }
 
+static void remark_difference(void *found, const char *what, const char *old, const char *new)
+{
+    bench_regression_remark(found, "%s differs: %.120s, now %.120s", what, old, new);
+}
+
 void bench_regression_environment(BenchRegression *found)
 {
     const BenchMachine *old = &found->machine[BENCH_OLD], *new = &found->machine[BENCH_NEW];
-    const struct {
-        const char *what, *old, *new;
-    } text[] = {
-        {"processor", old->cpu, new->cpu},          {"processor", old->cpu_model, new->cpu_model},
-        {"compiler", old->compiler, new->compiler}, {"libraries", old->libraries, new->libraries},
-        {"kernel", old->kernel, new->kernel},       {"governor", old->governor, new->governor},
-        {"host", old->hostname, new->hostname},
-    };
-    for (size_t i = 0; i < sizeof text / sizeof *text; i++)
-        if (bench_machine_known(text[i].old) && bench_machine_known(text[i].new) &&
-            strcmp(text[i].old, text[i].new) != 0)
-            bench_regression_remark(found, "%s differs: %.120s, now %.120s", text[i].what,
-                                    text[i].old, text[i].new);
+    bench_machine_differences(old, new, remark_difference, found);
     compare_flags(found);
     if (old->cores && old->cores != new->cores)
         bench_regression_remark(found, "cores differ: %d, now %d", old->cores, new->cores);
@@ -309,90 +302,22 @@ static void write_json(FILE *file, const BenchRegression *found)
                   bench_json_machine(&found->machine[BENCH_NEW])));
 }
 
-static json_t *context_json(const BenchMachine *machine)
-{
-    json_t *caches = json_array();
-    bool scaling =
-        bench_machine_known(machine->governor) && strcmp(machine->governor, "performance") != 0;
-    const long size[] = {machine->l1_bytes, machine->l2_bytes, machine->l3_bytes};
-    for (int level = 0; level < 3; level++)
-        if (size[level] > 0)
-            json_array_append_new(caches,
-                                  json_pack("{s:s, s:i, s:I, s:i}", "type",
-                                            level ? "Unified" : "Data", "level", level + 1, "size",
-                                            (json_int_t)size[level], "num_sharing", 1));
-    return json_pack("{s:o, s:o, s:s, s:i, s:i, s:b, s:o, s:[], s:s}", "date",
-                     bench_json_text(machine->utc), "host_name", bench_json_text(machine->hostname),
-                     "executable", "shapebench", "num_cpus", machine->cores, "mhz_per_cpu", 0,
-                     "cpu_scaling_enabled", (int)scaling, "caches", caches, "load_avg",
-                     "library_build_type", "release");
-}
-
-/* A run or an aggregate; `time` in s. */
-static json_t *benchmark_json(const BenchComparison *one, BenchBuild build, const char *aggregate,
-                              double time)
-{
-    static const char *const prefix[] = {"old", "new"};
-    const BenchSide *side = &one->samples->side[build];
-    char run[160], name[192];
-    snprintf(run, sizeof run, "%s/%s/%s", prefix[build], one->samples->scene,
-             bench_value_name(one->samples, one->value));
-    snprintf(name, sizeof name, "%s%s%s", run, aggregate ? "_" : "", aggregate ? aggregate : "");
-    bool share = aggregate && !strcmp(aggregate, "cv"); /* a percentage; as Google's, unscaled */
-    double shown = share ? time : 1e9 * time;
-    int steps = side->row.steps > 0 ? side->row.steps : 1;
-    json_t *object = json_pack("{s:o, s:o, s:s, s:i, s:i}", "name", bench_json_text(name),
-                               "run_name", bench_json_text(run), "run_type",
-                               aggregate ? "aggregate" : "iteration", "repetitions", side->count,
-                               "threads", side->row.threads > 0 ? side->row.threads : 1);
-    if (aggregate)
-        json_object_update_new(object, json_pack("{s:s, s:s}", "aggregate_name", aggregate,
-                                                 "aggregate_unit", share ? "percentage" : "time"));
-    json_object_update_new(object, json_pack("{s:i, s:o, s:o, s:s}", "iterations",
-                                             aggregate ? side->count : steps, "real_time",
-                                             bench_json_number(shown), "cpu_time",
-                                             bench_json_number(shown), "time_unit", "ns"));
-    return object;
-}
-
-/* Every process of a build as a repetition, then the aggregates. */
-static void add_benchmarks(json_t *list, const BenchComparison *one, BenchBuild build, int family)
-{
-    const BenchSide *side = &one->samples->side[build];
-    const double *time = side->value[one->value];
-    size_t count = (size_t)side->count;
-    double mean = gsl_stats_mean(time, 1, count);
-    double deviation = count > 1 ? gsl_stats_sd(time, 1, count) : 0;
-    const struct {
-        const char *name;
-        double value;
-    } aggregate[] = {{"mean", mean},
-                     {"median", bench_quantile(time, side->count, 0.5)},
-                     {"stddev", deviation},
-                     {"cv", deviation / mean}};
-    for (int i = 0; i < side->count + 4; i++) {
-        bool whole = i >= side->count;
-        json_t *object = whole ? benchmark_json(one, build, aggregate[i - side->count].name,
-                                                aggregate[i - side->count].value)
-                               : benchmark_json(one, build, NULL, time[i]);
-        json_object_set_new(object, "family_index", json_integer(family));
-        json_object_set_new(object, "per_family_instance_index", json_integer(0));
-        if (!whole) json_object_set_new(object, "repetition_index", json_integer(i));
-        json_array_append_new(list, object);
-    }
-}
-
 static void write_gbench(FILE *file, const BenchRegression *found)
 {
+    static const char *const prefix[] = {"old", "new"};
     json_t *list = json_array();
     for (int b = 0; b < BENCH_BUILDS; b++)
         for (int i = 0; i < found->count; i++) {
             const BenchComparison *one = &found->list[i];
-            if (one->verdict != BENCH_INCORRECT && one->verdict != BENCH_NO_BASELINE)
-                add_benchmarks(list, one, (BenchBuild)b, b * found->count + i);
+            const BenchSide *side = &one->samples->side[b];
+            char name[160];
+            if (one->verdict == BENCH_INCORRECT || one->verdict == BENCH_NO_BASELINE) continue;
+            snprintf(name, sizeof name, "%s/%s/%s", prefix[b], one->samples->scene,
+                     bench_value_name(one->samples, one->value));
+            bench_gbench_add(list, name, b * found->count + i, side->value[one->value], side->count,
+                             side->row.steps, side->row.threads);
         }
-    bench_json_write(file, json_pack("{s:o, s:o}", "context",
-                                     context_json(&found->machine[BENCH_NEW]), "benchmarks", list));
+    bench_gbench_write(file, &found->machine[BENCH_NEW], list);
 }
 
 /* ---- JUnit */

@@ -237,6 +237,23 @@ void bench_machine_read(int argc, char **argv, int threads, BenchMachine *machin
     quote_command(argc, argv, sizeof machine->command, machine->command);
 }
 
+void bench_machine_differences(const BenchMachine *old, const BenchMachine *new,
+                               BenchMachineSay *say, void *context)
+{
+    const struct {
+        const char *what, *old, *new;
+    } text[] = {
+        {"processor", old->cpu, new->cpu},          {"processor", old->cpu_model, new->cpu_model},
+        {"compiler", old->compiler, new->compiler}, {"libraries", old->libraries, new->libraries},
+        {"kernel", old->kernel, new->kernel},       {"governor", old->governor, new->governor},
+        {"host", old->hostname, new->hostname},     {"instruction set", old->isa, new->isa},
+    };
+    for (size_t i = 0; i < sizeof text / sizeof *text; i++)
+        if (bench_machine_known(text[i].old) && bench_machine_known(text[i].new) &&
+            strcmp(text[i].old, text[i].new) != 0)
+            say(context, text[i].what, text[i].old, text[i].new);
+}
+
 json_t *bench_json_machine(const BenchMachine *machine)
 {
     return bench_json_record(fields, FIELDS, machine);

@@ -42,6 +42,12 @@ bool bench_machine_known(const char *text);
  * `text` say what differs. What a record does not hold is not held against it. */
 bool bench_machine_same(const BenchMachine *a, const BenchMachine *b, size_t size, char *text);
 
+/* Calls `say` for each text in which they differ, as far as it is known of both: processor (name,
+ * and what is behind it), compiler, libraries, kernel, governor, host, instruction set. */
+typedef void BenchMachineSay(void *context, const char *what, const char *old, const char *new);
+void bench_machine_differences(const BenchMachine *old, const BenchMachine *new,
+                               BenchMachineSay *say, void *context);
+
 /* All of them: the group "machine" of a file that is written, or read. Files lack what was first
  * written down later: it is unknown. */
 void bench_machine_store(BenchH5 *h5, const BenchMachine *machine);
