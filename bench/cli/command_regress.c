@@ -89,11 +89,17 @@ static const BenchSetting settings[] = {
 static void check(const struct argp_state *state, void *record)
 {
     const Options *options = record;
-    if (!options->baseline == !options->revision)
-        bench_usage(state, "compare with what? Say either --baseline FILE.h5 or --revision REV");
+    int files = options->common.words;
+    if (!options->baseline + !options->revision + !files != 2)
+        bench_usage(state, "compare what? Say either --baseline FILE.h5, --revision REV, or two "
+                           "files: OLD.h5 NEW.h5");
+    if (files == 1) bench_usage(state, "%s: with which file?", options->common.word[0]);
+    if (files && (options->rounds || options->repeats || options->block > 0))
+        bench_usage(state, "--rounds, --repeats and --block say how to measure: files are compared "
+                           "as they are");
     if (options->by == BY_CYCLES && options->format == BENCH_REGRESSION_GBENCH)
         bench_usage(state, "--by cycles: gbench has times alone");
-    if (options->baseline && options->paper)
+    if ((options->baseline || files) && options->paper)
         bench_usage(state, "--paper: a file has its own scenes; choose of them with --scene");
 }
 
@@ -106,7 +112,9 @@ static const char help[] =
     "0.01. The threshold is what a build differs from itself by between processes of the same "
     "rounds, and at least 2%, of a stage also 0.5% of the step; beside a file, which cannot be run "
     "interleaved, it is wider, and at least 10%. Scenes of a file are measured with the engine, "
-    "precision and threads that it says.\v"
+    "precision and threads that it says. With OLD.h5 and NEW.h5 nothing is measured: their repeats "
+    "are the samples, of any two builds, machines or instruction sets; in a process repeats are "
+    "more alike than processes are, so there, too, the threshold is at least 10%.\v"
     "A program of another revision is kept in build/regress, for next time.\n" BENCH_EXIT_CODES
     " Of regress alone: 5 slower; 6 no baseline for a scene, or a baseline of another machine; 7 "
     "no "
@@ -262,6 +270,53 @@ static SmCode build_revision(Session *session, SmError *error)
     return code;
 }
 
+/* Is it one of the scenes named, or is none? */
+static bool wanted(const Options *options, const char *scene)
+{
+    for (int i = 0; i < options->scenes.count; i++)
+        if (!strcmp(options->scenes.name[i], scene)) return true;
+    return options->scenes.count == 0;
+}
+
+/* A stored file as a build of its own, every repeat a sample. Whatever the instruction set. */
+static SmCode add_file(Session *session, BenchBuild build, SmError *error)
+{
+    BenchRow *rows;
+    int count;
+    SmCode code = bench_store_load(session->options->common.word[build], &rows, &count,
+                                   &session->found.machine[build], error);
+    if (code) return code;
+    for (int i = 0; i < count; i++) {
+        if (!wanted(session->options, rows[i].scene)) continue;
+        rows[i].isa[0] = '\0';
+        bench_ab_add_repeats(&session->all, build, &rows[i]);
+    }
+    bench_rows_free(rows, count);
+    return SM_OK;
+}
+
+/* Both files. A scene that is in neither is misspelt. */
+static SmCode add_files(Session *session, SmError *error)
+{
+    const Options *options = session->options;
+    BenchRegression *found = &session->found;
+    SmCode code = add_file(session, BENCH_OLD, error);
+    if (!code) code = add_file(session, BENCH_NEW, error);
+    if (code) return code;
+    for (int i = 0; i < options->scenes.count; i++) {
+        bool there = false;
+        for (int s = 0; s < session->all.count; s++)
+            there |= !strcmp(session->all.scenes[s].scene, options->scenes.name[i]);
+        if (!there)
+            return sm_fail(error, (SmCode)BENCH_EXIT_NO_BASELINE,
+                           "no baseline: neither file has the scene %.60s",
+                           options->scenes.name[i]);
+    }
+    snprintf(found->baseline, sizeof found->baseline, "%.200s", options->common.word[BENCH_OLD]);
+    snprintf(found->stored, sizeof found->stored, "%.200s", options->common.word[BENCH_NEW]);
+    return SM_OK;
+}
+
 /* The stored rows of the scenes that were measured. */
 static void add_stored(Session *session)
 {
@@ -292,8 +347,9 @@ static SmCode take_counters(Session *session, const BenchAbRunner *rounds, SmErr
     SmError why;
     found->counter = "perf_event";
     if (counted(session)) return SM_OK;
-    if (session->options->baseline) {
-        bench_regression_remark(found, "no counters: %s or this build has none", found->baseline);
+    if (!session->options->revision) {
+        bench_regression_remark(found, "no counters: %s or %s has none", found->baseline,
+                                found->stored[0] ? found->stored : "this build");
         return SM_OK;
     }
     found->counter = "callgrind";
@@ -320,7 +376,9 @@ static SmCode measure(Session *session, SmError *error)
         .by_cycles = options->by == BY_CYCLES,
         .folder = session->folder,
         .progress = &session->progress};
-    SmCode code = bench_ab_run(&rounds, &session->all, found->machine, error);
+    SmCode code = options->common.words
+                      ? add_files(session, error)
+                      : bench_ab_run(&rounds, &session->all, found->machine, error);
     if (code) return code;
     add_stored(session);
     return options->counters ? take_counters(session, &rounds, error) : SM_OK;
@@ -367,7 +425,9 @@ static SmCode check_cycles(SmError *error)
 static SmCode run(Session *session, const BenchMachine *here, SmError *error)
 {
     const Options *options = session->options;
-    SmCode code = options->by == BY_CYCLES ? check_cycles(error) : SM_OK;
+    bool files = options->common.words > 0;
+    SmCode code = options->by == BY_CYCLES && !files ? check_cycles(error) : SM_OK;
+    if (!code && files) return compare(session, error);
     if (!code && options->baseline) code = load_baseline(session, here, error);
     if (!code) choose_tasks(session);
     if (!code) code = choose_rounds(session, error);
@@ -426,8 +486,8 @@ static const Options defaults = {.threshold = NAN};
 const BenchCommand bench_command_regress = {
     .name = "regress",
     .summary = "is this build slower than another one, or wrong?",
-    .line = {settings, BENCH_TAKES_ALL, NULL, help, check,
-             .limit = "Say --baseline FILE.h5 or --revision REV"},
+    .line = {settings, BENCH_TAKES_ALL, "[OLD.h5 NEW.h5]", help, check, .most = 2,
+             .limit = "Two files are compared"},
     .size = sizeof(Options),
     .defaults = &defaults,
     .perform = perform,

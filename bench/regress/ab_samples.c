@@ -93,6 +93,19 @@ void bench_ab_add(BenchAbSamples *all, BenchBuild build, int round, const BenchR
     side->round[side->count++] = round;
 }
 
+void bench_ab_add_repeats(BenchAbSamples *all, BenchBuild build, const BenchRow *row)
+{
+    BenchRow one = *row;
+    one.repeats = 1;
+    if (!row->valid) bench_ab_add(all, build, 0, row);
+    for (int r = 0; r < row->repeats && row->valid; r++) {
+        one.total = row->total + r;
+        one.stage = row->stage + r;
+        one.counter = row->counter ? row->counter + r : NULL;
+        bench_ab_add(all, build, r, &one);
+    }
+}
+
 void bench_ab_free(BenchAbSamples *all)
 {
     for (int i = 0; i < all->count; i++)

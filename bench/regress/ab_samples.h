@@ -59,6 +59,9 @@ BenchAbScene *bench_ab_scene(BenchAbSamples *all, const char *scene);
 /* Adds a process's row, of which nothing is kept but copies. */
 void bench_ab_add(BenchAbSamples *all, BenchBuild build, int round, const BenchRow *row);
 
+/* The same of every repeat as if it were a process: of a stored file, which has but one. */
+void bench_ab_add_repeats(BenchAbSamples *all, BenchBuild build, const BenchRow *row);
+
 void bench_ab_free(BenchAbSamples *all);
 
 #endif

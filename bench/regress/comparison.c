@@ -151,9 +151,9 @@ static void measure(BenchComparison *result, int comparisons, const BenchCompare
 }
 
 /* Could the test call nothing different, whatever is measured? */
-static bool finds_nothing(int rounds, int comparisons)
+static bool finds_nothing(int old, int new, int comparisons)
 {
-    return bench_least_p(rounds) * comparisons >= BENCH_LEVEL;
+    return bench_least_p(old, new) * comparisons >= BENCH_LEVEL;
 }
 
 static BenchComparisonVerdict judge(BenchComparison *result, int comparisons,
@@ -168,8 +168,10 @@ static BenchComparisonVerdict judge(BenchComparison *result, int comparisons,
     least = fmax(least, least_of_step * bench_value_unit(whole) * step / result->amount[BENCH_OLD]);
     double limit = isnan(params->threshold) ? BENCH_NOISE_LIMIT : params->threshold;
     result->threshold = fmax(noise, isnan(params->threshold) ? least : params->threshold);
-    bool few = params->interleaved ? finds_nothing(params->rounds, comparisons)
-                                   : side[BENCH_NEW].count < BENCH_LEAST_PROCESSES;
+    bool few = params->interleaved
+                   ? finds_nothing(params->rounds, params->rounds, comparisons)
+                   : side[BENCH_NEW].count < BENCH_LEAST_PROCESSES ||
+                         finds_nothing(side[BENCH_OLD].blocks, side[BENCH_NEW].blocks, comparisons);
     if (few || isnan(noise)) return BENCH_TOO_FEW;
     bool sure = result->adjusted < BENCH_LEVEL;
     if (sure && result->ratio > 1 + result->threshold && result->low > 1) return BENCH_SLOWER;
@@ -241,7 +243,7 @@ void bench_comparisons_free(BenchComparison *list, int count)
 int bench_compare_rounds(int comparisons)
 {
     int rounds = 1;
-    while (finds_nothing(rounds, comparisons)) rounds++;
+    while (finds_nothing(rounds, rounds, comparisons)) rounds++;
     return rounds;
 }
 

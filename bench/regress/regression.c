@@ -104,7 +104,9 @@ void bench_regression_summary(const BenchRegression *found, size_t size, char *l
     int unsure = had[BENCH_TOO_NOISY] + had[BENCH_TOO_FEW];
     if (!unsure) return;
     char remedy[64] = "more --rounds";
-    if (had[BENCH_TOO_FEW])
+    if (found->stored[0])
+        strcpy(remedy, "store more repeats");
+    else if (had[BENCH_TOO_FEW])
         snprintf(remedy, sizeof remedy, "at least --rounds %d",
                  bench_comparisons_rounds(found->list, found->count, found->params));
     if (unsure < found->count) sm_append(line, size, "; no verdict on %d", unsure);
@@ -192,6 +194,9 @@ static void write_start(FILE *file, const BenchRegression *found)
         fprintf(file,
                 "Against %s, interleaved: %d round%s of two processes of each build and scene",
                 found->baseline, found->params->rounds, found->params->rounds > 1 ? "s" : "");
+    else if (found->stored[0])
+        fprintf(file, "%s against %s, as stored: repeats are the samples", found->stored,
+                found->baseline);
     else
         fprintf(file, "Against %s, as stored: %d processes of this build and scene",
                 found->baseline, 2 * found->params->rounds);
@@ -291,15 +296,16 @@ static void write_json(FILE *file, const BenchRegression *found)
     for (int i = 0; i < found->remarks; i++)
         json_array_append_new(remarks, bench_json_text(found->remark[i]));
     bench_json_write(
-        file,
-        json_pack("{s:i, s:o, s:i, s:o, s:b, s:i, s:o, s:s?, s:o, s:o, s:{s:o, s:o}}", "schema", 1,
-                  "verdict", bench_json_text(line), "exit_code",
-                  bench_comparisons_exit(found->list, found->count), "baseline",
-                  bench_json_text(found->baseline), "interleaved", (int)found->params->interleaved,
-                  "rounds", found->params->rounds, "seconds", bench_json_number(found->seconds),
-                  "counter", found->counter, "comparisons", list, "remarks", remarks,
-                  "environments", "old", bench_json_machine(&found->machine[BENCH_OLD]), "new",
-                  bench_json_machine(&found->machine[BENCH_NEW])));
+        file, json_pack("{s:i, s:o, s:i, s:o, s:o, s:b, s:i, s:o, s:s?, s:o, s:o, s:{s:o, s:o}}",
+                        "schema", 1, "verdict", bench_json_text(line), "exit_code",
+                        bench_comparisons_exit(found->list, found->count), "baseline",
+                        bench_json_text(found->baseline), "stored",
+                        found->stored[0] ? bench_json_text(found->stored) : json_null(),
+                        "interleaved", (int)found->params->interleaved, "rounds",
+                        found->params->rounds, "seconds", bench_json_number(found->seconds),
+                        "counter", found->counter, "comparisons", list, "remarks", remarks,
+                        "environments", "old", bench_json_machine(&found->machine[BENCH_OLD]),
+                        "new", bench_json_machine(&found->machine[BENCH_NEW])));
 }
 
 static void write_gbench(FILE *file, const BenchRegression *found)

@@ -15,6 +15,7 @@ typedef struct {
     const BenchCompareParams *params;
     BenchMachine machine[BENCH_BUILDS];
     char baseline[256];  /* "FILE.h5", "revision NAME (COMMIT)" */
+    char stored[256];    /* the file that is the new build; empty: it was measured */
     const char *counter; /* who counted, "perf_event" or "callgrind"; NULL: none are shown */
     double seconds;      /* that it took */
     char remark[BENCH_REMARKS][BENCH_REMARK];
@@ -41,7 +42,8 @@ void bench_regression_remark(BenchRegression *found, const char *format, ...)
 void bench_regression_environment(BenchRegression *found);
 
 /* Writes what was found in a format. The last line of text is the verdict on all.
- * json: {"schema": 1, "verdict", "exit_code", "baseline", "interleaved", "rounds", "comparisons":
+ * json: {"schema": 1, "verdict", "exit_code", "baseline", "stored", "interleaved", "rounds",
+ * "comparisons":
  *   [{"scene", "time", "verdict", "ratio", ..., "old": {"ms", "samples": [s], "outliers": [places],
  *   "cycles", ...}, "new"}], "remarks", "environments"}. What is not known is null. By cycles "ms"
  *   is null, and samples are cycles.

@@ -86,15 +86,18 @@ static int set_up(void **state)
 
 TEST(usage)
 {
-    expect("shapebench regress", 2, "compare with what?");
-    expect("shapebench regress --baseline a --revision b", 2, "compare with what?");
+    expect("shapebench regress", 2, "compare what?");
+    expect("shapebench regress --baseline a --revision b", 2, "compare what?");
     expect("shapebench regress --baseline a --by cycles --format gbench", 2, "has times alone");
     expect("shapebench regress --baseline a --by instructions", 2, "not one of time, cycles");
     expect("shapebench regress --baseline a --paper octree", 2, "--paper: a file has its own");
     expect("shapebench regress --baseline a --format pdf", 2, "'pdf' is not one of text, markdown");
     expect("shapebench regress --baseline a --threshold x", 2, "--threshold: 'x'");
     expect("shapebench regress --baseline a --rounds 0", 2, "--rounds: '0'");
-    expect("shapebench regress a.h5", 2, "what is 'a.h5'?");
+    expect("shapebench regress a.h5", 2, "a.h5: with which file?");
+    expect("shapebench regress a.h5 b.h5 c.h5", 2, "what is 'c.h5'? Two files are compared");
+    expect("shapebench regress a.h5 b.h5 --revision x", 2, "compare what?");
+    expect("shapebench regress a.h5 b.h5 --rounds 3", 2, "files are compared as they are");
     expect("shapebench regress --help", 0, "6 no baseline");
     expect("shapebench regress --help | tr '\\n' ' '", 0, "7 no verdict on any time");
 }
@@ -206,6 +209,45 @@ TEST(beside_a_stored_file)
     expect("shapebench regress --baseline gone.h5 --rounds 1 " TINY, 6,
            "the baseline has no such scene");
     bench_row_free(&row);
+}
+
+TEST(two_files_side_by_side)
+{
+    BenchRow *rows, row;
+    BenchMachine machine;
+    SmError error;
+    int count;
+    expect("shapebench regress tiny.h5 tiny.h5", 7, "too few samples): store more repeats");
+    expect("shapebench tables --scene tiny.cfg --repeats 20 --block 0.1 -o twenty.h5", 0, "tiny");
+    assert_int_equal(bench_store_load(path_in("twenty.h5"), &rows, &count, &machine, &error),
+                     SM_OK);
+    row = rows[0];
+    for (int r = 0; r < row.repeats; r++) { /* the machine's other work is no matter of this test */
+        row.total[r] = 1e-4 * (1 + 1e-3 * r);
+        for (int s = 0; s < SM_STAGES; s++) row.stage[r][s] = row.total[r] / SM_STAGES;
+    }
+    store("old.h5", &row, &machine);
+    expect("shapebench regress old.h5 old.h5", 0, "not slower in ");
+    strcpy(machine.cpu, "Another 9000");
+    strcpy(machine.isa, "other");
+    strcpy(row.isa, "other");
+    for (int r = 0; r < row.repeats; r++) row.total[r] *= 1.25;
+    store("slow.h5", &row, &machine);
+    Result result;
+    run("shapebench regress old.h5 slow.h5 --threshold 0.1", &result);
+    assert_int_equal(result.code, 5);
+    assert_non_null(strstr(result.out, "slow.h5 against old.h5, as stored"));
+    assert_non_null(strstr(result.out, "most in tiny total: 1.250 times (1.2"));
+    assert_non_null(strstr(result.out, "processor differs: "));
+    assert_non_null(strstr(result.out, "instruction set differs: "));
+    expect("shapebench regress slow.h5 old.h5 --threshold 0.1", 0, "faster");
+    expect("shapebench regress old.h5 slow.h5 --scene hand", 6, "neither file has the scene hand");
+    expect("shapebench regress old.h5 slow.h5 --format json", 5, "\"stored\": \"slow.h5\"");
+    row.valid = false;
+    strcpy(row.reason, "goals are off");
+    store("wrong.h5", &row, &machine);
+    expect("shapebench regress old.h5 wrong.h5", 1, "INVALID: tiny: this build: goals are off");
+    bench_rows_free(rows, count);
 }
 
 /* Where there are none, that is a line; a file may hold none. */

@@ -291,7 +291,7 @@ int bench_round_best(const BenchTimes *times, int rounds, double *best)
     return found;
 }
 
-double bench_least_p(int count)
+double bench_least_p(int a_count, int b_count)
 {
-    return 2 * exp(-gsl_sf_lnchoose(2 * (unsigned)count, (unsigned)count));
+    return 2 * exp(-gsl_sf_lnchoose((unsigned)(a_count + b_count), (unsigned)a_count));
 }

@@ -183,5 +183,5 @@ TEST(a_round_counts_with_its_best)
     assert_int_equal(bench_round_best(&times, 3, best), 2);
     assert_true(best[0] == 2 && best[1] == 5);
     const double low[] = {1, 2, 3, 4, 5}, high[] = {6, 7, 8, 9, 10};
-    near(bench_least_p(5), bench_mann_whitney(low, 5, high, 5), 1e-9);
+    near(bench_least_p(5, 5), bench_mann_whitney(low, 5, high, 5), 1e-9);
 }
