@@ -32,9 +32,7 @@ static int values(const BenchCompareParams *params)
     return params->by_cycles ? 1 : BENCH_TIMES;
 }
 
-/* Where the builds did other work: what, and both. What an old file does not state (row_store.h) is
- * not judged. */
-static bool same_work(const BenchRow *a, const BenchRow *b, size_t size, char *reason)
+bool bench_same_work(const BenchRow *a, const BenchRow *b, size_t size, char *reason)
 {
     const struct {
         const char *what;
@@ -94,8 +92,8 @@ static bool comparable(BenchComparison *result, const BenchCompareParams *params
                  side[missing].reason);
         return false;
     }
-    return same_work(&side[BENCH_OLD].row, &side[BENCH_NEW].row, sizeof result->reason,
-                     result->reason);
+    return bench_same_work(&side[BENCH_OLD].row, &side[BENCH_NEW].row, sizeof result->reason,
+                           result->reason);
 }
 
 static BenchTimes times_of(const BenchSide *side, int value)
