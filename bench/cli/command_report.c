@@ -8,7 +8,7 @@
 #include "../system/process.h"
 #include "command.h"
 
-enum { FIXED = 10 }; /* words of the command that starts the script */
+enum { FIXED = 12 }; /* words of the command that starts the script */
 
 #define PYTHON "/usr/bin/python3" /* Debian's, which has h5py and matplotlib */
 
@@ -54,11 +54,13 @@ static SmCode perform(void *record, int argc, char **argv, SmError *error)
     const Options *options = record;
     const BenchCommon *common = &options->common;
     (void)argc, (void)argv;
-    char script[PATH_MAX];
+    char script[PATH_MAX], program[PATH_MAX];
     SmCode code = bench_script_find("report/main.py", script, error);
     if (code) return code;
-    const char *const start[] = {PYTHON,          script,    "--output",
-                                 options->output, "--title", options->title};
+    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    program[length < 0 ? 0 : length] = '\0';
+    const char *const start[] = {PYTHON,    script,         "--output",  options->output,
+                                 "--title", options->title, "--program", program};
     const char **word = sm_alloc((size_t)(FIXED + common->words + 1), sizeof *word);
     memcpy(word, start, sizeof start);
     int words = sizeof start / sizeof *start;

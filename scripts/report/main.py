@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """From result files to one page that can be sent to a colleague: `shapebench report` starts it.
 
-usage: main.py [--title TEXT] [--overwrite] [--no-page] -o NAME.html|FOLDER FILE.h5...
+usage: main.py [--title TEXT] [--overwrite] [--no-page] [--program PATH] -o NAME.html|FOLDER FILE.h5...
 
 NAME.html is one file with everything in it; anything else is a folder with index.html, and every figure
 as SVG, PNG and CSV. Exit code: 0 done, 2 usage, 3 a file cannot be used, 4 cannot be written."""
@@ -32,6 +32,7 @@ try:
     import calibration_figures
     import claim_figures
     import draft
+    import history
     import live
     import row_figures
     import sources
@@ -67,6 +68,13 @@ def measured_part(files):
                 row_figures.all_figures(files), live.scenes(files))
 
 
+def history_part(program, found):
+    if not found:
+        return None
+    return Part("history", "From file to file", history.sentences(found), [history.side_by_side(program, found)],
+                [history.figure(found)])
+
+
 def claims_part(files):
     files = [source for source in files if source.claims]
     if not files:
@@ -96,8 +104,11 @@ def calibrations_part(files):
                 [figure for source in files for figure in calibration_figures.figures(source)])
 
 
-def compose(files):
-    parts = [measured_part(files), claims_part(files), sweeps_part(files), calibrations_part(files),
+def compose(program, files):
+    found = history.read(program, files)
+    if found:
+        files = [source for source in files if source not in history.superseded(found)]
+    parts = [measured_part(files), history_part(program, found), claims_part(files), sweeps_part(files), calibrations_part(files),
              Part("environment", "Where and how", tables=[tables.environment(files)])]
     return [part for part in parts if part]
 
@@ -214,6 +225,7 @@ def parse():
     parser.add_argument("--overwrite", action="store_true", help="replace a page or report that is there")
     parser.add_argument("--title", default="shapebench report")
     parser.add_argument("--no-page", action="store_true", help="leave out the live page, a megabyte")
+    parser.add_argument("--program", default="shapebench", help="which compares files (default: %(default)s)")
     parser.add_argument("--quiet", action="store_true")
     return parser.parse_args()
 
@@ -250,7 +262,10 @@ def main():
         fail(str(error), 4)
     except sources.Unusable as error:
         fail(str(error), 3)
-    parts = compose(files)
+    try:
+        parts = compose(options.program, files)
+    except sources.Unusable as error:
+        fail(str(error), 3)
     unique_names(parts)
     write = write_page if alone else write_folder
     try:

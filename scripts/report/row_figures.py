@@ -1,5 +1,5 @@
 """Figures of measured rows (`shapebench tables -o`): shares of stages, times beside the papers', frames of
-scenes that change, threads, and a scene's history."""
+scenes that change, and threads."""
 import numpy as np
 
 from drawing import COLOURS, MARKS, PAPER, STATUS_MARKS, Figure, canvas, number
@@ -146,40 +146,6 @@ def threads(sources):
                   "; ".join(words) + ".", ["scene", "engine", "threads", "total_ms", "gain"], data).draw(figure)
 
 
-def history(sources):
-    """A scene's cost from file to file, of one commit or several."""
-    lines = {}
-    for source in sorted(sources, key=lambda s: s.machine.get("utc", "")):
-        for row in valid(source.rows):
-            point = (source.machine.get("utc", ""), source.commit, source.name, source.path, row["total_ms"],
-                     row["total_low_ms"], row["total_high_ms"])
-            lines.setdefault(key(row) + (row["threads"], source.machine.get("cpu", "")), []).append(point)
-    lines = {name: points for name, points in lines.items() if len({p[3] for p in points}) > 1}
-    if not lines:
-        return None
-    files = sorted({p[:4] for points in lines.values() for p in points})
-    place = {file: n for n, file in enumerate(files)}
-    figure, axes = canvas(7.2, 3.8)
-    data, words = [], []
-    for n, (name, points) in enumerate(sorted(lines.items())):
-        (first, low, high), (last, last_low, last_high) = points[0][4:], points[-1][4:]
-        spread = np.array([[(p[4] - p[5]) / first, (p[6] - p[4]) / first] for p in points]).T
-        axes.errorbar([place[p[:4]] for p in points], [p[4] / first for p in points], yerr=np.maximum(spread, 0),
-                      marker=MARKS[n % 7], color=COLOURS[n % 7], capsize=2,
-                      label=f"{name[0]}, {name[3]} thread{'s' * (name[3] > 1)}")
-        data += [[name[0], name[1], name[3], *p[:3], *p[4:]] for p in points]
-        apart = "overlap" if low <= last_high and last_low <= high else "do not overlap"
-        words.append(f"{name[0]} from {number(first)} to {number(last)} ms ({last / first:.3f} times; quartiles {apart})")
-    axes.set_xticks(range(len(files)), [f"{name}\n{commit}\n{utc[:16]}" for utc, commit, name, _ in files], fontsize=8)
-    axes.axhline(1, color=PAPER, linewidth=0.8)
-    axes.set_ylabel("time of a step, first file = 1")
-    axes.legend(loc="center left", bbox_to_anchor=(1, 0.5))
-    return Figure("history", "A scene from file to file", "Medians and quartiles, relative to the oldest file; + marks a "
-                  "build from changed sources.", "; ".join(words) + ".",
-                  ["scene", "engine", "threads", "utc", "commit", "file", "total_ms", "low_ms", "high_ms"],
-                  data).draw(figure)
-
-
 def all_figures(sources):
     made = []
     for source in sources:
@@ -190,5 +156,5 @@ def all_figures(sources):
                 figure.source = source
                 made.append(figure)
         made += [frames(row) for row in valid(group) if "frames_samples" in row]
-    made += [figure for figure in (threads(sources), history(sources)) if figure]
+    made += [figure for figure in [threads(sources)] if figure]
     return made

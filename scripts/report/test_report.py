@@ -261,8 +261,8 @@ class Report(unittest.TestCase):
 
     def test_commits_make_a_history(self):
         def older(file):
-            file["machine"].attrs["git_commit"] = b"0123456789abcdef"
-            file["machine"].attrs["utc"] = b"2020-01-01T00:00:00Z"
+            file["machine"].attrs["git_commit"] = np.bytes_("0123456789abcdef")
+            file["machine"].attrs["utc"] = np.bytes_("2020-01-01T00:00:00Z")
 
         page = self.page(self.rows, self.copy("older.h5", older))
         self.assertIn("A scene from file to file", page.text)
@@ -275,8 +275,50 @@ class Report(unittest.TestCase):
 
         page = self.page(self.rows, self.copy("b.h5", slower))
         self.assertIn("A scene from file to file", page.text)
+        self.assertIn("Side by side: A is rows.h5, B is b.h5", page.text)
         self.assertIn("(1.250 times; quartiles", page.text)
         self.assertIn("b.h5", page.text)
+
+    def days(self, change):
+        """Files of twelve days: `change` receives each one's row, machine and number."""
+        def of(day):
+            def alter(file):
+                row, machine = file["rows/000"], file["machine"].attrs
+                machine["git_commit"] = np.bytes_(f"{day:010d}abc")
+                machine["utc"] = np.bytes_(f"2026-03-{day:02d}T10:00:00Z")
+                factor = change(machine, day) * (1 + (7919 * day % 17 - 8) / 1000)
+                for name in ("total_ms", "total_low_ms", "total_high_ms"):
+                    row.attrs[name] *= factor
+                row["total"][:] *= factor
+            return self.copy(f"day{day:02d}.h5", alter)
+        return [of(day) for day in range(1, 13)]
+
+    def test_a_change_is_drawn_and_told_where_it_is(self):
+        def change(machine, day):
+            if day >= 7:
+                machine["kernel"] = np.bytes_("Linux 99")
+            return 1.25 if day >= 7 else 1
+
+        page = self.page(*self.days(change))
+        words = " ".join(page.text.split())
+        self.assertRegex(words, r"penguin is slower from day07.h5 \(2026-03-07, 0000000007\+?\) on: 1.2[45]\d times "
+                                r"\(1\.\d+ to 1\.\d+, p 0.002\); there the kernel changed\.")
+        self.assertRegex(words, r"From day07.h5 .{,40} on the kernel is Linux 99, before ")
+        self.assertIn("11 files whose scenes newer ones have are shown here alone.", words)
+        self.assertIn("Side by side: A is day01.h5, B is day12.h5", words)
+        self.assertRegex(words, r"penguintotal[\d.]+ to [\d.]+%too few samples")
+        data = next(base64.b64decode(address.split(",")[1]).decode() for address in page.addresses
+                    if address.startswith("data:text/csv") and b"machine_changed" in base64.b64decode(address.split(",")[1]))
+        lines = list(csv.DictReader(io.StringIO(data)))
+        self.assertEqual([(line["file"], line["changed"], line["machine_changed"]) for line in lines],
+                         [(f"day{day:02d}.h5", "1" if day == 7 else "0", "kernel" if day == 7 else "") for day in range(1, 13)])
+
+    def test_a_history_without_a_change_says_so(self):
+        words = " ".join(self.page(*self.days(lambda machine, day: 1)).text.split())
+        self.assertIn("No scene changed", words)
+        self.assertNotIn("is slower from", words)
+        few = " ".join(self.page(self.at("day01.h5"), self.at("day02.h5")).text.split())
+        self.assertIn("No change can be told from noise in fewer than ten files", few)
 
     def test_a_number_is_rounded_once(self):
         def tell(file):

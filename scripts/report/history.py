@@ -1,0 +1,176 @@
+"""A scene's cost from file to file, and two files side by side. What changed, and what is slower, the program says
+(`shapebench history`, `regress`): nothing is judged here."""
+import json
+import subprocess
+import textwrap
+
+from drawing import COLOURS, MARKS, PAPER, Figure, canvas, number
+from stored import Unusable
+from tables import Table
+
+FEW = 4  # files that are all shown in full
+MOST_NAMES = 24  # under the axis
+SHORT = {"processor": "CPU", "instruction set": "ISA"}
+
+
+def ask(program, *words):
+    """What the program answers in JSON. Its exit code is a verdict where it answers."""
+    done = subprocess.run([program, *words], capture_output=True, text=True)
+    if not done.stdout:
+        raise Unusable(done.stderr.strip().split(": ", 1)[-1] or f"{program} {words[0]} ended with {done.returncode}")
+    return json.loads(done.stdout)
+
+
+def read(program, sources):
+    """The history of all files that have rows; None where no scene is in two of them."""
+    scenes = {}
+    for source in sources:
+        for row in source.rows:
+            if row["valid"] and row["total_ms"] > 0:
+                scenes.setdefault(row["scene"], set()).add(source.path)
+    paths = [path for path in dict.fromkeys(source.path for source in sources)
+             if any(path in files and len(files) > 1 for files in scenes.values())]
+    if not paths:
+        return None
+    found = ask(program, "history", "--format", "json", "--", *paths)
+    by_path = {source.path: source for source in sources}
+    found["sources"] = [by_path[file["file"]] for file in found["files"]]
+    found["series"] = [series for series in found["series"] if len(series["points"]) > 1]
+    return found if found["series"] else None
+
+
+def superseded(found):
+    """Of many files those that newer ones repeat: they have no tables and figures of their own."""
+    newest = {series["points"][-1]["file"] for series in found["series"]}
+    if len(found["sources"]) <= FEW:
+        return []
+    return [source for at, source in enumerate(found["sources"]) if at not in newest]
+
+
+def label(series):
+    return f"{series['scene']}, {series['threads']} thread{'s' * (series['threads'] > 1)}"
+
+
+def named(source):
+    return f"{source.name} ({source.machine['utc'][:10]}, {source.commit})"
+
+
+def whats(found, at):
+    """What changed of the machine at a file: "kernel and compiler"."""
+    return " and ".join(dict.fromkeys(mark["what"] for mark in found["marks"] if mark["file"] == at))
+
+
+def changes(found):
+    """Each change of each series, as a sentence."""
+    for series in found["series"]:
+        for change in series["changes"]:
+            at = series["points"][change["point"]]["file"]
+            there = whats(found, at)
+            yield (f"{series['scene']} is {'slower' if change['ratio'] > 1 else 'faster'} from "
+                   f"{named(found['sources'][at])} on: {change['ratio']:.3f} times ({change['low']:.3f} to "
+                   f"{change['high']:.3f}, p {change['p']:.3f})" + (f"; there the {there} changed" if there else ""))
+
+
+def sentences(found):
+    told = list(changes(found))
+    most = max(len(series["points"]) for series in found["series"])
+    if most < 10:
+        yield "No change can be told from noise in fewer than ten files of a scene: this shows the times alone."
+    elif not told:
+        yield "No scene changed: E-divisive finds none in any."
+    yield from (sentence + "." for sentence in told)
+    older = superseded(found)
+    if older:
+        yield f"{len(older)} files whose scenes newer ones have are shown here alone."
+    for at, source in enumerate(found["sources"]):
+        for mark in (mark for mark in found["marks"] if mark["file"] == at):
+            yield f"From {named(source)} on the {mark['what']} is {mark['new']}, before {mark['old']}."
+
+
+def draw_series(axes, series, n):
+    """Medians and quartiles, the medians between changes as steps, and the first points after them as rings."""
+    points, colour = series["points"], COLOURS[n % 7]
+    first = points[0]["value"]
+    x, y = [p["file"] for p in points], [p["value"] / first for p in points]
+    spread = [[max(0, (p["value"] - p["low"]) / first) for p in points],
+              [max(0, (p["high"] - p["value"]) / first) for p in points]]
+    axes.errorbar(x, y, yerr=spread, marker=MARKS[n % 7], color=colour, capsize=2,
+                  linewidth=0.8 if series["changes"] else 1.5, markersize=4, label=label(series))
+    ends = [0] + [change["point"] for change in series["changes"]] + [len(points)]
+    for begin, end in zip(ends, ends[1:]):
+        if series["changes"]:
+            middle = sorted(y[begin:end])
+            middle = (middle[(end - begin) // 2] + middle[(end - begin - 1) // 2]) / 2
+            axes.plot([x[begin] - 0.4, x[end - 1] + 0.4], [middle, middle], color=colour, linewidth=2.2, alpha=0.6)
+        if begin:
+            axes.plot(x[begin], y[begin], "o", markersize=12, markerfacecolor="none", color=colour, markeredgewidth=1.8)
+
+
+def draw_marks(axes, found):
+    for at in sorted({mark["file"] for mark in found["marks"]}):
+        what = ", ".join(dict.fromkeys(SHORT.get(mark["what"], mark["what"]) for mark in found["marks"]
+                                       if mark["file"] == at))
+        axes.axvline(at - 0.5, color=PAPER, linestyle="--", linewidth=1)
+        axes.annotate(textwrap.fill(what, 24), (at - 0.5, 1), xycoords=("data", "axes fraction"), xytext=(2, 2),
+                      textcoords="offset points", fontsize=7, color="#444444", rotation=35, va="bottom")
+
+
+def name_files(axes, sources):
+    every = -(-len(sources) // MOST_NAMES)
+    many = len(sources) > 6
+    texts = [f"{s.commit}\n{s.machine['utc'][:10]}" if many else f"{s.name}\n{s.commit}\n{s.machine['utc'][:16]}"
+             for s in sources]
+    axes.set_xticks(range(0, len(sources), every), texts[::every], fontsize=7 if many else 8, rotation=90 if many else 0)
+
+
+def figure(found):
+    """All series, relative to their first."""
+    canvas_, axes = canvas(7.2 if len(found["sources"]) < 16 else 9, 3.8)
+    data, words = [], []
+    for n, series in enumerate(found["series"]):
+        points = series["points"]
+        draw_series(axes, series, n)
+        after = {change["point"] for change in series["changes"]}
+        for i, point in enumerate(points):
+            source = found["sources"][point["file"]]
+            data.append([series["scene"], series["engine"], series["threads"], source.machine["utc"], source.commit,
+                         source.name, point["value"], point["low"], point["high"], int(i in after),
+                         whats(found, point["file"])])
+        a, b = points[0], points[-1]
+        apart = "overlap" if a["low"] <= b["high"] and b["low"] <= a["high"] else "do not overlap"
+        words.append(f"{series['scene']} from {number(a['value'])} to {number(b['value'])} ms "
+                     f"({b['value'] / a['value']:.3f} times; quartiles {apart})")
+    draw_marks(axes, found)
+    name_files(axes, found["sources"])
+    axes.axhline(1, color=PAPER, linewidth=0.8)
+    axes.set_ylabel("time of a step, first file = 1")
+    axes.legend(loc="center left", bbox_to_anchor=(1, 0.5))
+    return Figure("history", "A scene from file to file",
+                  "Medians and quartiles, relative to the oldest file; + marks a build from changed sources. A ring is the "
+                  "first file after a change (E-divisive, Matteson and James 2014; p at most 0.01), a thick line the median "
+                  "between changes. At a dashed line what it names changed of the machine.",
+                  "; ".join(words + list(changes(found))) + ".",
+                  ["scene", "engine", "threads", "utc", "commit", "file", "total_ms", "low_ms", "high_ms", "changed",
+                   "machine_changed"], data).draw(canvas_)
+
+
+def side_by_side(program, found):
+    """The oldest and the newest file that share a scene, as `regress` compares them."""
+    shared = [(series["points"][0]["file"], series["points"][-1]["file"]) for series in found["series"]]
+    old, new = max(shared, key=lambda pair: pair[1] - pair[0])
+    old, new = found["sources"][old], found["sources"][new]
+    compared = ask(program, "regress", "--format", "json", "--quiet", "--", old.path, new.path)
+    table = Table(f"Side by side: A is {old.name}, B is {new.name}",
+                  ["scene", "time", "A ms", "B ms", "B / A", "95%", "threshold", "verdict"],
+                  f"A: {named(old)}. B: {named(new)}. {compared['verdict'][:1].upper()}{compared['verdict'][1:]}. Repeats are "
+                  "the samples; shapebench regress A.h5 B.h5 does this of any two files."
+                  + "".join(f" {remark[:1].upper()}{remark[1:]}." for remark in compared["remarks"]),
+                  folded=len(compared["comparisons"]) > 24)
+    for one in compared["comparisons"]:
+        shown = [number(one[side]["ms"]) for side in ("old", "new")]
+        if one["ratio"] is None:
+            table.add([one["scene"], "–", *shown, "–", "–", "–", f"{one['verdict']}: {one['reason']}"])
+            continue
+        table.add([one["scene"], one["time"].replace("_", " "), *shown, f"{one['ratio']:.3f}",
+                   f"{one['low']:.3f} to {one['high']:.3f}", f"{100 * one['threshold']:.1f}%", one["verdict"]])
+    return table
