@@ -82,6 +82,13 @@ check "find_package, static" "$folder/made/alone"
 ldd "$folder/made/program" | grep -qF "$root/usr/lib/libshapebench.so.${version%%.*}" || fail "another shared library"
 ! ldd "$folder/made/alone" | grep -q libshapebench || fail "the static library is shared"
 
+# Python's module, where this clone has one.
+if [ -d "$here/../lib/python/shapebench" ] && /usr/bin/python3 -c 'import numpy' 2>"$folder/log"; then
+    said=$(cd "$folder" && PYTHONPATH=$root/usr/lib/python3/dist-packages /usr/bin/python3 -B -c \
+        'import shapebench; print(shapebench.__file__, shapebench.__version__)')
+    [ "$said" = "$root/usr/lib/python3/dist-packages/shapebench/__init__.py $version" ] || fail "Python: $said"
+fi
+
 export PKG_CONFIG_LIBDIR=$root/usr/lib/pkgconfig # alone: no other package's headers are needed
 read -ra flags < <(pkg-config --cflags --libs "shapebench = $version")
 "${CC:-cc}" -o "$folder/by-pkg-config" "$folder/program.c" "${flags[@]}"
