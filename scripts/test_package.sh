@@ -56,12 +56,12 @@ for program in "$root/usr/bin" "$build"; do
 done >"$folder/hashes"
 [ "$(sort -u "$folder/hashes" | wc -l) $(wc -l <"$folder/hashes")" = "1 2" ] || fail "it runs differently"
 
-sed -n '/^#include <shapebench.h>/,/^```/{/^```/!p}' "$here/../README.md" >"$folder/program.c"
+sed -n '/^#include <shapebench.h>/,/^```/{/^```/!p}' "$here/../lib/README.md" >"$folder/program.c"
 cat >"$folder/CMakeLists.txt" <<'PROJECT'
 cmake_minimum_required(VERSION 3.22)
 project(strangers C)
 PROJECT
-sed -n '/^find_package(shapebench/,/^```/{/^```/!p}' "$here/../README.md" >>"$folder/CMakeLists.txt"
+sed -n '/^find_package(shapebench/,/^```/{/^```/!p}' "$here/../lib/README.md" >>"$folder/CMakeLists.txt"
 sed -i 's/^target_link/add_executable(program program.c)\n&/' "$folder/CMakeLists.txt"
 cat >>"$folder/CMakeLists.txt" <<'PROJECT'
 add_executable(alone program.c)
@@ -79,8 +79,9 @@ check() {
 }
 check "find_package, shared" "$folder/made/program"
 check "find_package, static" "$folder/made/alone"
-ldd "$folder/made/program" | grep -qF "$root/usr/lib/libshapebench.so.${version%%.*}" || fail "another shared library"
-! ldd "$folder/made/alone" | grep -q libshapebench || fail "the static library is shared"
+for program in program alone; do ldd "$folder/made/$program" >"$folder/$program.needs"; done
+grep -qF "$root/usr/lib/libshapebench.so.${version%%.*}" "$folder/program.needs" || fail "another shared library"
+! grep -q libshapebench "$folder/alone.needs" || fail "the static library is shared"
 
 # Python's module, where this clone has one.
 if [ -d "$here/../lib/python/shapebench" ] && /usr/bin/python3 -c 'import numpy' 2>"$folder/log"; then

@@ -105,7 +105,7 @@ void bench_regression_summary(const BenchRegression *found, size_t size, char *l
     if (!unsure) return;
     char remedy[64] = "more --rounds";
     if (found->stored[0])
-        strcpy(remedy, "store more repeats");
+        strcpy(remedy, "files with more repeats");
     else if (had[BENCH_TOO_FEW])
         snprintf(remedy, sizeof remedy, "at least --rounds %d",
                  bench_comparisons_rounds(found->list, found->count, found->params));

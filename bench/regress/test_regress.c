@@ -217,7 +217,8 @@ TEST(two_files_side_by_side)
     BenchMachine machine;
     SmError error;
     int count;
-    expect("shapebench regress tiny.h5 tiny.h5", 7, "too few samples): store more repeats");
+    expect("shapebench regress tiny.h5 tiny.h5", 7,
+           "too few samples): take files with more repeats");
     expect("shapebench tables --scene tiny.cfg --repeats 20 --block 0.1 -o twenty.h5", 0, "tiny");
     assert_int_equal(bench_store_load(path_in("twenty.h5"), &rows, &count, &machine, &error),
                      SM_OK);
