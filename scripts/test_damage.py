@@ -43,7 +43,8 @@ MADE = {  # file: what makes it
     "nodes.vtkhdf": ["run", "a.cfg", "--engine", "octree", "--record", "nodes"],
 }
 READ = {  # file: what reads it; @ is the file, ! a new name
-    "rows.h5": [["PROGRAM", "regress", "--baseline", "@", "--scene", "nothing"], ["PROGRAM", "report", "-o", "!.html", "@"]],
+    "rows.h5": [["PROGRAM", "regress", "--baseline", "@", "--scene", "nothing"], ["PROGRAM", "history", "@", "@"],
+                ["PROGRAM", "report", "-o", "!.html", "@"]],
     "sweep.h5": [["PROGRAM", "sweep", "@"], ["PROGRAM", "merge", "!.h5", "@"], ["PROGRAM", "report", "-o", "!.html", "@"],
                  ["plot_sweep.py", "@", "-o", "!.svg"]],
     "beam.h5": [["PROGRAM", "calibrate", "@"], ["PROGRAM", "report", "-o", "!.html", "@"],

@@ -120,7 +120,8 @@ def name_files(axes, sources):
     many = len(sources) > 6
     texts = [f"{s.commit}\n{s.machine['utc'][:10]}" if many else f"{s.name}\n{s.commit}\n{s.machine['utc'][:16]}"
              for s in sources]
-    axes.set_xticks(range(0, len(sources), every), texts[::every], fontsize=7 if many else 8, rotation=90 if many else 0)
+    axes.set_xticks(range(0, len(sources), every), texts[::every], fontsize=7 if many else 8,
+                    rotation=90 if many else 0)
 
 
 def figure(found):
