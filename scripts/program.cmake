@@ -59,25 +59,3 @@ install(DIRECTORY scripts/report DESTINATION ${scripts_folder}
   FILES_MATCHING PATTERN *.py PATTERN *.html PATTERN *.css PATTERN *.js PATTERN test_* EXCLUDE
   PATTERN stored.py EXCLUDE) # a link
 install(FILES lib/python/shapebench/stored.py DESTINATION ${scripts_folder}/report)
-
-# The manual's pages, where help2man is there to make them of --help.
-find_program(HELP2MAN help2man)
-if(NOT HELP2MAN)
-  message(STATUS "No man pages: install help2man")
-elseif(NOT SHAPEBENCH_SANITIZE)
-  add_custom_command(OUTPUT man.stamp COMMAND ${CMAKE_SOURCE_DIR}/scripts/man $<TARGET_FILE:shapebench> man
-    COMMAND ${CMAKE_COMMAND} -E touch man.stamp DEPENDS shapebench scripts/man COMMENT "Writing man pages" VERBATIM)
-  add_custom_target(man ALL DEPENDS man.stamp)
-  install(DIRECTORY ${CMAKE_BINARY_DIR}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 FILES_MATCHING PATTERN *.1.gz)
-endif()
-
-install(FILES scripts/completions/shapebench.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
-  RENAME shapebench)
-# Debian's zsh looks for what packages bring elsewhere than for what is installed by hand.
-install(CODE "string(REGEX REPLACE \".*/usr\" vendor-completions zsh_functions \"\${CMAKE_INSTALL_PREFIX}\")
-  if(NOT zsh_functions STREQUAL vendor-completions)
-    set(zsh_functions site-functions)
-  endif()")
-install(FILES scripts/completions/_shapebench DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/\${zsh_functions}")
-install(FILES README.md CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
