@@ -76,11 +76,10 @@ static long lay_out(RefNodes *nodes)
  */
 static bool crosses(const RefNodes *nodes, long n, const RefSeam *seam)
 {
-    double reach = nodes->reach[n] * (1 - 1e-9);
-    for (int d = 0; d < 2; d++) {
-        double at = nodes->position[n][d] + seam->shift[d];
-        if (at + reach <= seam->low[d] || at - reach >= seam->high[d]) return false;
-    }
+    double reach = nodes->reach[n] * (1 - 1e-9), at[2];
+    ref_seam_cross(seam, nodes->position[n], at);
+    for (int d = 0; d < 2; d++)
+        if (at[d] + reach <= seam->low[d] || at[d] - reach >= seam->high[d]) return false;
     return true;
 }
 
@@ -103,9 +102,8 @@ static void place_images(RefNodes *nodes)
             }
             nodes->owner[end] = (int)n;
             nodes->reach[end] = nodes->reach[n];
-            for (int d = 0; d < 3; d++)
-                nodes->position[end][d] = nodes->position[n][d] + (d < 2 ? seam->shift[d] : 0);
-            end++;
+            ref_seam_cross(seam, nodes->position[n], nodes->position[end]);
+            nodes->position[end++][2] = 0;
         }
     nodes->images = end - nodes->count;
 }

@@ -9,10 +9,18 @@
 
 #include "octants.h"
 
-/* A place in the plane is also the place + shift, where that is in the rectangle low..high. */
+/* A place in the plane is also the place + shift, or shift - place where the plane goes on turned
+ * by half a turn, if that is in the rectangle low..high. */
 typedef struct {
     double low[2], high[2], shift[2];
+    bool turned;
 } RefSeam;
+
+/* Where a place is beyond a seam. */
+static inline void ref_seam_cross(const RefSeam *seam, const double theta[2], double there[2])
+{
+    for (int d = 0; d < 2; d++) there[d] = seam->shift[d] + (seam->turned ? -theta[d] : theta[d]);
+}
 
 typedef struct {
     long count;

@@ -1,19 +1,46 @@
 #include "chart.h"
 
+#include <math.h>
 #include <string.h>
+
+static void add_seam(RefChart *chart, double first, double second, bool turned)
+{
+    RefSeam *seam = chart->seam + chart->seams++;
+    *seam = (RefSeam){.shift = {first, second}, .turned = turned};
+    memcpy(seam->low, chart->low, sizeof seam->low);
+    memcpy(seam->high, chart->high, sizeof seam->high);
+}
 
 void ref_chart_wrap(RefChart *chart, bool first, bool second)
 {
     chart->seams = 0;
     for (int i = first ? -1 : 0; i <= (first ? 1 : 0); i++)
-        for (int j = second ? -1 : 0; j <= (second ? 1 : 0); j++) {
-            if (i == 0 && j == 0) continue;
-            RefSeam *seam = chart->seam + chart->seams++;
-            memcpy(seam->low, chart->low, sizeof seam->low);
-            memcpy(seam->high, chart->high, sizeof seam->high);
-            seam->shift[0] = i * (chart->high[0] - chart->low[0]);
-            seam->shift[1] = j * (chart->high[1] - chart->low[1]);
-        }
+        for (int j = second ? -1 : 0; j <= (second ? 1 : 0); j++)
+            if (i != 0 || j != 0)
+                add_seam(chart, i * (chart->high[0] - chart->low[0]),
+                         j * (chart->high[1] - chart->low[1]), false);
+}
+
+void ref_chart_skew(RefChart *chart, double shift)
+{
+    double side[2] = {chart->high[0] - chart->low[0], chart->high[1] - chart->low[1]};
+    ref_chart_wrap(chart, true, false);
+    shift -= side[0] * rint(shift / side[0]);
+    for (int j = -1; j <= 1; j += 2)
+        for (int i = -1; i <= 1; i++) add_seam(chart, i * side[0] + j * shift, j * side[1], false);
+}
+
+void ref_chart_fold(RefChart *chart, double lower, double upper)
+{
+    double side = chart->high[0] - chart->low[0], middle = chart->low[0] + side / 2;
+    double centre[2] = {lower, upper};
+    ref_chart_wrap(chart, true, false);
+    for (int end = 0; end < 2; end++) { /* the branch point that is nearest to the side's middle */
+        centre[end] -= side / 2 * rint((centre[end] - middle) / (side / 2));
+        for (int i = -1; i <= 1; i++)
+            add_seam(chart, 2 * centre[end] + i * side, 2 * (end ? chart->high : chart->low)[1],
+                     true);
+    }
 }
 
 static bool holds(const double low[2], const double high[2], const double theta[2])
@@ -26,7 +53,8 @@ bool ref_chart_enter(const RefChart *chart, double theta[2])
     if (holds(chart->low, chart->high, theta)) return true;
     for (int s = 0; s < chart->seams; s++) {
         const RefSeam *seam = chart->seam + s;
-        double there[2] = {theta[0] + seam->shift[0], theta[1] + seam->shift[1]};
+        double there[2];
+        ref_seam_cross(seam, theta, there);
         if (!holds(seam->low, seam->high, there)) continue;
         memcpy(theta, there, sizeof there);
         return true;

@@ -8,7 +8,7 @@ enum { REF_MOST_SEAMS = 8 };
 
 /* A rectangle of the plane of parameters (theta1, theta2) and the surface over it. Its sides are
  * rims of the surface, or seams, behind which the parameters go on in the rectangle but for a
- * constant. */
+ * constant, or but for a constant and half a turn. */
 typedef struct {
     double low[2], high[2];
     int seams;
@@ -22,6 +22,21 @@ typedef struct {
 /* Joins the rectangle's opposite sides along the axes that are given: the chart of a cylinder has
  * one, that of a torus two. */
 void ref_chart_wrap(RefChart *chart, bool first, bool second);
+
+/* Joins the first axis' sides, and the upper side to the lower one `shift` farther along: what is
+ * at (theta1, high) goes on at (theta1 - shift, low). That is every torus but for its size, with
+ * |shift| up to half the side. */
+void ref_chart_skew(RefChart *chart, double shift);
+
+/* Joins the first axis' sides, and folds the lower and the upper side each onto itself by half a
+ * turn about the places (lower, low[1]) and (upper, high[1]): a closed surface of genus 0, made as
+ * a pillowcase is. Each fold ends at two branch points, half a side apart, about which the surface
+ * has half a turn of the plane. A function that is smooth on the surface is even about them, f(w) =
+ * f(-w), and so are all that nodes and their images make: linear terms cancel there, and L falls to
+ * 0 as the distance does. Covers may reach around such a point, as no value is there twice unless
+ * it is the same; they could not around a point with more than a whole turn. Here and on skewed
+ * tori, covers may reach half a side. */
+void ref_chart_fold(RefChart *chart, double lower, double upper);
 
 /* Moves a place that is beyond a seam into the rectangle; false where there is no seam. */
 bool ref_chart_enter(const RefChart *chart, double theta[2]);

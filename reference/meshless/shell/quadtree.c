@@ -73,18 +73,25 @@ static bool refine(RefQuadtree *tree, double threshold)
     return true;
 }
 
-/* Splits what lies across side `side` of a cell that is two levels finer. */
+/* Splits what lies across side `side` of a cell that is two levels finer. Where the plane goes on
+ * with a shift, cells' corners do not meet: both ends of the side are looked at. */
 static bool relieve(RefQuadtree *tree, RefCell fine, int side)
 {
     double middle[2], edge[2];
     int axis = side / 2;
+    bool changed = false;
     ref_quadtree_cell(tree, &fine, middle, edge);
     middle[axis] += (side % 2 ? 0.5 : -0.5) * (edge[axis] + tree->unit[axis]);
-    if (!ref_chart_enter(tree->chart, middle)) return false;
-    int at = ref_quadtree_at(tree, middle);
-    if (tree->cell[at].size <= 2 * fine.size) return false;
-    split(tree, at);
-    return true;
+    for (int end = -1; end <= 1; end += 2) {
+        double beyond[2] = {middle[0], middle[1]};
+        beyond[!axis] += end * 0.5 * (edge[!axis] - tree->unit[!axis]);
+        if (!ref_chart_enter(tree->chart, beyond)) continue;
+        int at = ref_quadtree_at(tree, beyond);
+        if (tree->cell[at].size <= 2 * fine.size) continue;
+        split(tree, at);
+        changed = true;
+    }
+    return changed;
 }
 
 /* One-level adjustment; splitting may call for more splitting. */

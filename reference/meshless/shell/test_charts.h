@@ -44,6 +44,19 @@ static inline RefChart random_chart(unsigned *seed, double depth, bool first, bo
     return chart;
 }
 
+/* A random chart of four rims (0), one or two wraps (1, 2, 3), a skewed torus (4) or two folds (5).
+ * The factor goes over seams of the first four as it should; over the others it leaps. */
+enum { CHART_KINDS = 6 };
+static inline RefChart chart_of_kind(unsigned *seed, int kind, double depth, Waves *waves)
+{
+    RefChart chart = random_chart(seed, depth, kind & 1, kind & 2, waves);
+    double side = chart.high[0] - chart.low[0];
+    if (kind == 4) ref_chart_skew(&chart, random_between(seed, -0.5, 0.5) * side);
+    if (kind == 5)
+        ref_chart_fold(&chart, chart.low[0], random_between(seed, chart.low[0], chart.high[0]));
+    return chart;
+}
+
 static inline RefQuadtree quadtree_of(const RefChart *chart, int across, long wanted)
 {
     RefQuadtree tree;

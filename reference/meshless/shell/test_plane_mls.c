@@ -40,24 +40,60 @@ static void way_to(const RefChart *chart, const double at[2], const double x[2],
     }
 }
 
+/* Where the nodes and images stand that the functions at x are of, in their order. */
+static void stand(const RefNodes *nodes, const double x[3], const RefShape *shape,
+                  double (*place)[2])
+{
+    int near, count = 0;
+    const int *member = ref_nodes_near(nodes, x, &near);
+    for (int n = 0; n < near; n++) {
+        const double *at = nodes->position[member[n]];
+        double off = fmax(fabs(x[0] - at[0]), fabs(x[1] - at[1]));
+        if (off >= nodes->reach[member[n]]) continue;
+        assert_int_equal(nodes->owner ? nodes->owner[member[n]] : member[n], shape->node[count]);
+        memcpy(place[count++], at, sizeof *place);
+    }
+    assert_int_equal(count, shape->count);
+}
+
 /* Sums over functions reproduce the basis about x with its derivatives, in units of the cell. */
 static void check_reproduction(const RefQuadtree *tree, const RefNodes *nodes, RefBasis basis,
                                const double x[3], RefShape *shape)
 {
     static const double origin[2] = {0};
-    double middle[2], edge[2];
+    double middle[2], edge[2], (*place)[2] = sm_alloc((size_t)nodes->most, sizeof *place);
     ref_quadtree_cell(tree, tree->cell + ref_quadtree_at(tree, x), middle, edge);
     assert_true(ref_mls_at(nodes, basis, x, shape));
+    stand(nodes, x, shape, place);
     for (int term = 0; term < (int)basis; term++) {
         double sum[6] = {0}, wanted[6], there[6], way[2];
         monomial(term, origin, wanted);
         for (int n = 0; n < shape->count; n++) {
-            way_to(tree->chart, nodes->position[shape->node[n]], x, way);
-            for (int d = 0; d < 2; d++) way[d] /= edge[0];
+            for (int d = 0; d < 2; d++) way[d] = (place[n][d] - x[d]) / edge[0];
             monomial(term, way, there);
             for (int k = 0; k < 6; k++) sum[k] += there[0] * part_of(shape, n, k, edge[0]);
         }
         for (int k = 0; k < 6; k++) assert_true(fabs(sum[k] - wanted[k]) < 1e-10);
+    }
+    free(place);
+}
+
+/* Images stand where seams lead from their nodes, every one at another place. */
+static void check_images(const RefChart *chart, const RefNodes *nodes)
+{
+    for (long i = nodes->count; i < nodes->count + nodes->images; i++) {
+        const double *image = nodes->position[i], *node = nodes->position[nodes->owner[i]];
+        bool led = false;
+        for (int s = 0; s < chart->seams; s++) {
+            double there[2];
+            ref_seam_cross(chart->seam + s, node, there);
+            led |= hypot(there[0] - image[0], there[1] - image[1]) < 1e-12;
+        }
+        assert_true(led);
+        for (long j = 0; j < i; j++)
+            if (nodes->owner[j] == nodes->owner[i])
+                assert_true(hypot(nodes->position[j][0] - image[0],
+                                  nodes->position[j][1] - image[1]) > 1e-9);
     }
 }
 
@@ -70,13 +106,14 @@ static void random_place(const RefChart *chart, double x[3])
 /* Half of the places are at the rectangle's sides. */
 TEST(reproduction_to_1e_10_also_across_seams)
 {
-    for (int trial = 0; trial < 8; trial++) {
+    for (int trial = 0; trial < 2 * CHART_KINDS; trial++) {
         Waves waves;
-        RefChart chart = random_chart(&seed, 0.4, trial & 1, trial & 2, &waves);
+        RefChart chart = chart_of_kind(&seed, trial % CHART_KINDS, 0.4, &waves);
         RefQuadtree tree = quadtree_of(&chart, 4, 600);
         for (int b = 0; b < 2; b++) {
             RefNodes nodes;
             ref_quadtree_nodes(&tree, cover[b], &nodes);
+            check_images(&chart, &nodes);
             for (int n = 0; n < 100; n++) {
                 double x[3];
                 random_place(&chart, x);
@@ -134,6 +171,49 @@ static int function_at(const RefChart *chart, const RefNodes *nodes, const RefSh
     }
     fail_msg("no node at (%g, %g)", place[0], place[1]);
     return -1;
+}
+
+/* A node's function, with those of its images, and its derivatives. */
+static void add_all(const RefShape *shape, double (*part)[6], double unit)
+{
+    for (int n = 0; n < shape->count; n++)
+        for (int k = 0; k < 6; k++) part[shape->node[n]][k] += part_of(shape, n, k, unit);
+}
+
+/* Both places beside a fold that are one of the surface have the same functions, with slopes turned
+ * around: near branch points, too, where node and image cover them together. */
+TEST(functions_agree_on_both_sides_of_a_fold)
+{
+    for (int trial = 0; trial < 4; trial++) {
+        Waves waves;
+        RefChart chart = chart_of_kind(&seed, 5, 0.4, &waves);
+        RefQuadtree tree = quadtree_of(&chart, 8, 400);
+        RefNodes nodes;
+        ref_quadtree_nodes(&tree, 5.3, &nodes); /* no second derivative jumps there */
+        RefShape shape = ref_shape_create(&nodes);
+        double(*part)[6] = sm_alloc(2 * (size_t)nodes.count, sizeof *part);
+        for (int n = 0; n < 100; n++) {
+            const RefSeam *fold = chart.seam + 2 + n % 6;
+            double x[3] = {random_between(&seed, chart.low[0], chart.high[0]), fold->shift[1] / 2,
+                           0},
+                   y[3] = {0};
+            ref_seam_cross(fold, x, y);
+            if (y[0] < chart.low[0] || y[0] > chart.high[0]) continue;
+            memset(part, 0, 2 * (size_t)nodes.count * sizeof *part);
+            assert_true(ref_mls_at(&nodes, REF_MLS_PLANE_QUADRATIC, x, &shape));
+            add_all(&shape, part, 0.05);
+            assert_true(ref_mls_at(&nodes, REF_MLS_PLANE_QUADRATIC, y, &shape));
+            add_all(&shape, part + nodes.count, 0.05);
+            for (long i = 0; i < nodes.count; i++)
+                for (int k = 0; k < 6; k++)
+                    assert_true(fabs(part[i][k] - (k == 1 || k == 2 ? -1 : 1) *
+                                                      part[nodes.count + i][k]) < 1e-9);
+        }
+        free(part);
+        ref_shape_free(&shape);
+        ref_nodes_free(&nodes);
+        ref_quadtree_free(&tree);
+    }
 }
 
 /* The same surface cut open along another line of roots. */
