@@ -1,0 +1,199 @@
+#include "cuts.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The way along the rim between two of its places. */
+static double apart(double whole, double a, double b)
+{
+    double way = fabs(a - b);
+    return fmin(way, whole - way);
+}
+
+/* By how much the rim turns at place n of `count`, over `window` of its length to both sides. */
+static double turning(const double (*x)[3], const double *along, double whole, int count, int n,
+                      double window)
+{
+    int end[2] = {n, n};
+    double way[2][3], lengths = 1;
+    for (int k = 0; k < 2; k++) {
+        int step = k ? 1 : count - 1;
+        do end[k] = (end[k] + step) % count;
+        while (end[k] != n && apart(whole, along[end[k]], along[n]) < window);
+        for (int d = 0; d < 3; d++) way[k][d] = (k ? 1 : -1) * (x[end[k]][d] - x[n][d]);
+        lengths *= sqrt(sm_dot(way[k], way[k]));
+    }
+    return lengths > 0 ? acos(fmin(fmax(sm_dot(way[0], way[1]) / lengths, -1), 1)) : 0;
+}
+
+/* The place of the best score that is not taken. */
+static int best_place(const double *score, const bool *taken, int count)
+{
+    int best = -1;
+    for (int n = 0; n < count; n++)
+        if (!taken[n] && (best < 0 || score[n] > score[best])) best = n;
+    return best;
+}
+
+/* Four places of the rim, of so much length up to each; rising. */
+static void choose(const double (*x)[3], const double *along, double whole, int count, int place[4])
+{
+    double *turn = sm_alloc((size_t)count, sizeof *turn);
+    double *score = sm_alloc((size_t)count, sizeof *score);
+    bool *taken = sm_alloc((size_t)count, sizeof *taken), *near = sm_alloc((size_t)count, 1);
+    for (int n = 0; n < count; n++) turn[n] = turning(x, along, whole, count, n, whole / 24);
+    for (int k = 0; k < 4; k++) {
+        int best = best_place(turn, near, count);
+        bool sharp = best >= 0 && turn[best] > M_PI / 4;
+        for (int n = 0; n < count && !sharp; n++) {
+            score[n] = INFINITY;
+            for (int j = 0; j < k; j++)
+                score[n] = fmin(score[n], apart(whole, along[n], along[place[j]]));
+        }
+        if (!sharp) best = best_place(score, taken, count);
+        place[k] = best;
+        taken[best] = true;
+        for (int n = 0; n < count; n++) near[n] |= apart(whole, along[n], along[best]) < whole / 8;
+    }
+    for (int k = 1; k < 4; k++) /* in order */
+        for (int j = k; j > 0 && place[j - 1] > place[j]; j--) {
+            int other = place[j];
+            place[j] = place[j - 1];
+            place[j - 1] = other;
+        }
+    sm_free_all(turn, score, taken, near);
+}
+
+void ref_cuts_corners(const RefTriangulation *surface, const double (*position)[3], int corner[4])
+{
+    int first = 0, count = 0, place[4];
+    while (surface->rim[first] < 0) first++;
+    for (int at = first; count == 0 || at != first; at = ref_rim_next(surface, at)) count++;
+    int *rim = sm_alloc((size_t)count, sizeof *rim);
+    double *along = sm_alloc((size_t)count, sizeof *along), whole = 0;
+    double(*x)[3] = sm_alloc((size_t)count, sizeof *x);
+    for (int n = 0, at = first; n < count; n++, at = ref_rim_next(surface, at)) {
+        rim[n] = at;
+        along[n] = whole;
+        whole += surface->length[at];
+        memcpy(x[n], position[surface->vertex[at]], sizeof *x);
+    }
+    choose((const double(*)[3])x, along, whole, count, place);
+    for (int k = 0; k < 4; k++) corner[k] = rim[place[k]];
+    sm_free_all(rim, along, x);
+}
+
+/* Dijkstra's search over a closed surface's edges, with a heap of vertices. */
+typedef struct {
+    const RefTriangulation *surface;
+    double *distance; /* [vertices] */
+    int *from;        /* [vertices] the corner whose edge leads there, or -1 */
+    int *heap, *slot; /* [vertices]; slot: where in the heap, -1 before and after */
+    int count;
+} Search;
+
+static void sift_up(Search *s, int at)
+{
+    int v = s->heap[at];
+    for (; at > 0 && s->distance[s->heap[(at - 1) / 2]] > s->distance[v]; at = (at - 1) / 2) {
+        s->heap[at] = s->heap[(at - 1) / 2];
+        s->slot[s->heap[at]] = at;
+    }
+    s->heap[at] = v;
+    s->slot[v] = at;
+}
+
+static int pop(Search *s)
+{
+    int top = s->heap[0], v = s->heap[--s->count], at = 0;
+    for (;;) {
+        int child = 2 * at + 1;
+        if (child >= s->count) break;
+        if (child + 1 < s->count && s->distance[s->heap[child + 1]] < s->distance[s->heap[child]])
+            child++;
+        if (!(s->distance[s->heap[child]] < s->distance[v])) break;
+        s->heap[at] = s->heap[child];
+        s->slot[s->heap[at]] = at;
+        at = child;
+    }
+    s->heap[at] = v;
+    s->slot[v] = at;
+    s->slot[top] = -1;
+    return top;
+}
+
+static void reach(Search *s, int vertex, double distance, int from)
+{
+    if (!(distance < s->distance[vertex])) return;
+    s->distance[vertex] = distance;
+    s->from[vertex] = from;
+    if (s->slot[vertex] < 0) {
+        s->slot[vertex] = s->count;
+        s->heap[s->count++] = vertex;
+    }
+    sift_up(s, s->slot[vertex]);
+}
+
+/* Lowers distances to those from one more vertex; from[] leads back to it where they fell. */
+static void search_from(Search *s, int root)
+{
+    const RefTriangulation *surface = s->surface;
+    reach(s, root, 0, -1);
+    while (s->count > 0) {
+        int v = pop(s), first = surface->corner[v], at = first;
+        do {
+            reach(s, surface->vertex[ref_corner_next(at)], s->distance[v] + surface->length[at],
+                  at);
+            at = ref_corner_left(surface, at);
+        } while (at != first);
+    }
+}
+
+static void forget(Search *s)
+{
+    for (long v = 0; v < s->surface->vertices; v++) {
+        s->distance[v] = INFINITY;
+        s->from[v] = s->slot[v] = -1;
+    }
+}
+
+static int farthest(const Search *s)
+{
+    int best = 0;
+    for (int v = 1; v < s->surface->vertices; v++)
+        if (s->distance[v] > s->distance[best]) best = v;
+    return best;
+}
+
+/* Cuts along the shortest way between two vertices; where that was cut, it is whole again. */
+static void slit(Search *s, int from, int to, bool *cut)
+{
+    forget(s);
+    search_from(s, from);
+    for (int at = s->from[to]; at >= 0; at = s->from[s->surface->vertex[at]])
+        cut[at] = cut[s->surface->twin[at]] = !cut[at];
+}
+
+int ref_cuts_slits(const RefTriangulation *surface, bool *cut)
+{
+    size_t count = (size_t)surface->vertices;
+    Search s = {.surface = surface,
+                .distance = sm_alloc(count, sizeof(double)),
+                .from = sm_alloc(count, sizeof(int)),
+                .heap = sm_alloc(count, sizeof(int)),
+                .slot = sm_alloc(count, sizeof(int))};
+    int tip[4];
+    forget(&s);
+    search_from(&s, 0);
+    tip[0] = farthest(&s);
+    forget(&s);
+    for (int k = 0; k < 3; k++) {
+        search_from(&s, tip[k]);
+        tip[k + 1] = farthest(&s);
+    }
+    slit(&s, tip[0], tip[1], cut);
+    slit(&s, tip[2], tip[3], cut);
+    sm_free_all(s.distance, s.from, s.heap, s.slot);
+    return surface->corner[tip[0]];
+}

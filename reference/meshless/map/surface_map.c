@@ -1,0 +1,464 @@
+#include "surface_map.h"
+
+#include <complex.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../../lib/system/clock.h"
+#include "cuts.h"
+#include "harmonic.h"
+#include "locate.h"
+
+/* What the chart's functions know. */
+struct RefMapSurface {
+    RefTriangulation triangles;
+    double (*position)[3]; /* [triangles.vertices] */
+    double *factor;        /* [triangles.vertices] */
+    RefLocator locator;
+};
+
+/* The plane: steps along the edges of corners, the place of every vertex, and what places are the
+ * same. */
+typedef struct {
+    RefMapKind kind;
+    double *step[2], *at[2]; /* [corners], [vertices] of the surface, or of it taken twice */
+    double side[2];          /* of the rectangle */
+    double shift;            /* from a torus' upper side to its lower one */
+    const RefTriangulation *surface; /* that `at` is of */
+} Plane;
+
+const char *ref_map_kind_name(RefMapKind kind)
+{
+    static const char *const name[] = {"disk", "annulus", "torus", "sphere"};
+    return name[kind];
+}
+
+void ref_surface_map_free(RefSurfaceMap *map)
+{
+    if (map->surface) {
+        ref_triangulation_free(&map->surface->triangles);
+        ref_locator_free(&map->surface->locator);
+        sm_free_all(map->surface->position, map->surface->factor);
+    }
+    sm_free_all(map->surface, map->theta, map->factor);
+    *map = (RefSurfaceMap){.surface = NULL};
+}
+
+static double area_of(const RefTriangulation *surface)
+{
+    double area = 0, cotangent[3];
+    for (long t = 0; t < surface->triangles; t++)
+        area += ref_triangle_shape(surface->length + 3 * t, cotangent) / 2;
+    return area;
+}
+
+/* Moves a place into the rectangle by what makes it the same place of the surface; whether by half
+ * a turn. */
+static bool reduce(const Plane *plane, double theta[2])
+{
+    double height = plane->kind == REF_MAP_SPHERE ? 2 * plane->side[1] : plane->side[1];
+    bool turned = false;
+    if (plane->kind == REF_MAP_DISK) return false;
+    if (plane->kind != REF_MAP_ANNULUS) {
+        double rows = floor(theta[1] / height);
+        theta[0] -= rows * plane->shift;
+        theta[1] -= rows * height;
+        turned = plane->kind == REF_MAP_SPHERE && theta[1] > plane->side[1];
+        if (turned) {
+            theta[0] = plane->shift - theta[0];
+            theta[1] = height - theta[1];
+        }
+    }
+    theta[0] -= plane->side[0] * floor(theta[0] / plane->side[0]);
+    return turned;
+}
+
+static void scale(const RefTriangulation *surface, double factor, double *step)
+{
+    for (long c = 0; c < 3 * surface->triangles; c++) step[c] *= factor;
+}
+
+/* Forms of 0 and 1 between two parts of a rim, each between held vertices, and the energy. */
+static SmCode between(const RefTriangulation *surface, const double *weight,
+                      const unsigned char *part, int low, int high, double **form, SmError *error)
+{
+    bool *held = sm_alloc((size_t)surface->vertices, sizeof *held);
+    *form = sm_alloc(3 * (size_t)surface->triangles, sizeof **form);
+    for (long v = 0; v < surface->vertices; v++) held[v] = (part[v] & (low | high)) != 0;
+    for (int c = 0; c < 3 * surface->triangles; c++)
+        (*form)[c] = ((part[surface->vertex[ref_corner_next(c)]] & high) != 0) -
+                     ((part[surface->vertex[c]] & high) != 0);
+    SmCode code = ref_harmonic_solve(surface, weight, held, 1, form, error);
+    free(held);
+    return code;
+}
+
+/* The rectangle of a disk: theta1 between two opposite parts of its rim, theta2 between the others.
+ * Both energies are too large, by nearly as much: the rectangle's shape is the root of their
+ * ratio. */
+static SmCode map_disk(const RefTriangulation *surface, const double (*position)[3],
+                       const double *weight, Plane *plane, SmError *error)
+{
+    int corner[4];
+    unsigned char *part = sm_alloc((size_t)surface->vertices, sizeof *part);
+    ref_cuts_corners(surface, position, corner);
+    for (int k = 0, at = corner[0]; k < 4; k++) {
+        do {
+            part[surface->vertex[at]] |= 1 << k;
+            at = ref_rim_next(surface, at);
+            part[surface->vertex[at]] |= 1 << k;
+        } while (at != corner[(k + 1) % 4]);
+    }
+    SmCode code = between(surface, weight, part, 1 << 3, 1 << 1, plane->step, error);
+    if (code == SM_OK)
+        code = between(surface, weight, part, 1 << 0, 1 << 2, plane->step + 1, error);
+    int root = surface->vertex[corner[0]];
+    free(part);
+    if (code != SM_OK) return code;
+    double energy[2];
+    for (int d = 0; d < 2; d++)
+        energy[d] = ref_harmonic_product(surface, weight, plane->step[d], plane->step[d]);
+    double ratio = sqrt(energy[0] / energy[1]), area = area_of(surface);
+    plane->side[0] = sqrt(area / ratio);
+    plane->side[1] = sqrt(area * ratio);
+    for (int d = 0; d < 2; d++) {
+        scale(surface, plane->side[d], plane->step[d]);
+        plane->at[d] = ref_harmonic_integral(surface, root, plane->step[d]);
+    }
+    return SM_OK;
+}
+
+/* The cylinder of an annulus: theta2 between its rims, theta1 once around. */
+static SmCode map_annulus(const RefTriangulation *surface, const double *weight, Plane *plane,
+                          SmError *error)
+{
+    unsigned char *part = sm_alloc((size_t)surface->vertices, sizeof *part);
+    int root = 0;
+    for (int c = 0; c < 3 * surface->triangles; c++)
+        if (surface->rim[c] >= 0) {
+            part[surface->vertex[c]] |= 1 << surface->rim[c];
+            if (surface->rim[c] == 0) root = surface->vertex[c];
+        }
+    SmCode code = between(surface, weight, part, 1, 2, plane->step + 1, error);
+    plane->step[0] = ref_harmonic_crossing(surface);
+    free(part);
+    if (code == SM_OK) code = ref_harmonic_solve(surface, weight, NULL, 1, plane->step, error);
+    if (code != SM_OK) return code;
+    if (ref_harmonic_wedge(surface, plane->step[0], plane->step[1]) < 0)
+        scale(surface, -1, plane->step[0]);
+    double energy[2];
+    for (int d = 0; d < 2; d++)
+        energy[d] = ref_harmonic_product(surface, weight, plane->step[d], plane->step[d]);
+    double ratio = sqrt(energy[0] / energy[1]), area = area_of(surface);
+    plane->side[0] = sqrt(area / ratio);
+    plane->side[1] = sqrt(area * ratio);
+    for (int d = 0; d < 2; d++) {
+        scale(surface, plane->side[d], plane->step[d]);
+        plane->at[d] = ref_harmonic_integral(surface, root, plane->step[d]);
+    }
+    return SM_OK;
+}
+
+/* The shortest two periods of the lattice of 1 and tau (Gauss). */
+static void shorten(double complex period[2])
+{
+    for (int n = 0; n < 100; n++) {
+        period[1] -= rint(creal(period[1] / period[0])) * period[0];
+        if (cabs(period[1]) >= cabs(period[0]) * (1 - 1e-12)) return;
+        double complex other = period[0];
+        period[0] = period[1];
+        period[1] = -other;
+    }
+}
+
+/* A torus of this area. Of forms a and b with periods (1, 0) and (0, 1), a + tau b is holomorphic,
+ * where the energies aa, ab, bb are |tau|^2, -Re tau and 1, each over Im tau. */
+static SmCode map_torus(const RefTriangulation *surface, const double *weight, double area,
+                        int root, Plane *plane, SmError *error)
+{
+    double *form[2], energy[3];
+    ref_harmonic_loops(surface, form);
+    SmCode code = ref_harmonic_solve(surface, weight, NULL, 2, form, error);
+    if (code != SM_OK) {
+        sm_free_all(form[0], form[1]);
+        return code;
+    }
+    if (ref_harmonic_wedge(surface, form[0], form[1]) < 0) scale(surface, -1, form[1]);
+    for (int k = 0; k < 3; k++)
+        energy[k] = ref_harmonic_product(surface, weight, form[k / 2], form[(k + 1) / 2]);
+    double height = sqrt(fmax(energy[0] * energy[2] - energy[1] * energy[1], 0)) / energy[2];
+    double complex tau = CMPLX(-energy[1] / energy[2], height), period[2] = {1, tau};
+    shorten(period);
+    double shape = cimag(period[1] / period[0]);
+    plane->side[0] = sqrt(area / shape);
+    plane->side[1] = plane->side[0] * shape;
+    double complex turn = plane->side[0] / period[0];
+    plane->shift = creal(period[1] * turn);
+    for (long c = 0; c < 3 * surface->triangles; c++) {
+        double complex step = (form[0][c] + tau * form[1][c]) * turn;
+        form[0][c] = creal(step);
+        form[1][c] = cimag(step);
+    }
+    for (int d = 0; d < 2; d++) {
+        plane->step[d] = form[d];
+        plane->at[d] = ref_harmonic_integral(surface, root, form[d]);
+    }
+    return SM_OK;
+}
+
+/* The half of the torus of a sphere that is taken twice, with a branch point at the origin. */
+static SmCode map_sphere(const RefTriangulation *twice, double area, int root, Plane *plane,
+                         SmError *error)
+{
+    long clamped;
+    double *weight = ref_harmonic_weights(twice, &clamped);
+    SmCode code = map_torus(twice, weight, 2 * area, root, plane, error);
+    plane->side[1] /= 2;
+    free(weight);
+    return code;
+}
+
+/* A triangle of the surface in the plane, its first corner in the rectangle. */
+static RefPlaced place_triangle(const Plane *plane, int triangle)
+{
+    RefPlaced placed = {.triangle = triangle};
+    int first = 3 * triangle, vertex = plane->surface->vertex[first];
+    for (int d = 0; d < 2; d++) placed.corner[0][d] = plane->at[d][vertex];
+    placed.turned = reduce(plane, placed.corner[0]);
+    double sign = placed.turned ? -1 : 1;
+    for (int d = 0; d < 2; d++) {
+        placed.corner[1][d] = placed.corner[0][d] + sign * plane->step[d][first];
+        placed.corner[2][d] = placed.corner[0][d] - sign * plane->step[d][first + 2];
+    }
+    return placed;
+}
+
+static double plane_area(const RefPlaced *placed)
+{
+    const double *a = placed->corner[0], *b = placed->corner[1], *c = placed->corner[2];
+    return ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2;
+}
+
+/* L of every vertex: the root of what the triangles around it have of area, over what they have in
+ * the plane. */
+static void find_factors(const RefPlaced *placed, struct RefMapSurface *on)
+{
+    const RefTriangulation *surface = &on->triangles;
+    double *flat = sm_alloc((size_t)surface->vertices, sizeof *flat), cotangent[3];
+    on->factor = sm_alloc((size_t)surface->vertices, sizeof *on->factor);
+    for (long t = 0; t < surface->triangles; t++)
+        for (int i = 0; i < 3; i++) {
+            int v = surface->vertex[3 * t + i];
+            on->factor[v] += ref_triangle_shape(surface->length + 3 * t, cotangent) / 2;
+            flat[v] += fabs(plane_area(placed + t));
+        }
+    for (long v = 0; v < surface->vertices; v++)
+        on->factor[v] = sqrt(on->factor[v] / fmax(flat[v], 1e-300));
+    free(flat);
+}
+
+static int by_value(const void *a, const void *b)
+{
+    const double *p = a, *q = b;
+    return (*p > *q) - (*p < *q);
+}
+
+/* Differences of angles, in degrees, and triangles that are turned over. */
+static void measure_angles(const RefTriangulation *surface, const RefPlaced *placed,
+                           RefSurfaceMap *map)
+{
+    size_t corners = 3 * (size_t)surface->triangles;
+    double *off = sm_alloc(corners, sizeof *off), cotangent[3];
+    for (size_t c = 0; c < corners; c++) {
+        const RefPlaced *flat = placed + c / 3;
+        const double *at = flat->corner[c % 3], *next = flat->corner[(c + 1) % 3];
+        const double *last = flat->corner[(c + 2) % 3];
+        double a[2] = {next[0] - at[0], next[1] - at[1]}, b[2] = {last[0] - at[0], last[1] - at[1]};
+        ref_triangle_shape(surface->length + c / 3 * 3, cotangent);
+        double angle = atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
+        off[c] = fabs(angle - atan2(1, cotangent[c % 3])) * 180 / M_PI;
+        map->flips += c % 3 == 0 && !(plane_area(flat) > 0);
+    }
+    qsort(off, corners, sizeof *off, by_value);
+    map->angle_median = off[corners / 2];
+    map->angle_95 = off[corners - 1 - corners / 20];
+    free(off);
+}
+
+/* What L is below on 5% and 95% of the area. */
+static void measure_factors(const RefTriangulation *surface, const RefPlaced *placed,
+                            RefSurfaceMap *map)
+{
+    size_t count = (size_t)surface->triangles;
+    double(*both)[2] = sm_alloc(count, sizeof *both), cotangent[3], sum = 0, so_far = 0;
+    for (size_t t = 0; t < count; t++) {
+        both[t][1] = ref_triangle_shape(surface->length + 3 * t, cotangent) / 2;
+        both[t][0] = sqrt(both[t][1] / fmax(fabs(plane_area(placed + t)), 1e-300));
+        sum += both[t][1];
+    }
+    qsort(both, count, sizeof *both, by_value);
+    for (size_t t = 0; t < count; t++) {
+        so_far += both[t][1];
+        if (so_far <= 0.05 * sum || t == 0) map->factor_low = both[t][0];
+        if (so_far <= 0.95 * sum || t == 0) map->factor_high = both[t][0];
+    }
+    free(both);
+}
+
+/* A triangle's images that reach into the rectangle, appended. */
+static long add_images(const RefChart *chart, const RefPlaced *placed, RefPlaced *image)
+{
+    long count = 0;
+    for (int s = -1; s < chart->seams; s++) {
+        RefPlaced one = *placed;
+        bool reaches = true;
+        for (int i = 0; i < 3 && s >= 0; i++)
+            ref_seam_cross(chart->seam + s, placed->corner[i], one.corner[i]);
+        for (int d = 0; d < 2; d++) {
+            double low = fmin(one.corner[0][d], fmin(one.corner[1][d], one.corner[2][d]));
+            double high = fmax(one.corner[0][d], fmax(one.corner[1][d], one.corner[2][d]));
+            reaches = reaches && low <= chart->high[d] && high >= chart->low[d];
+        }
+        if (reaches) image[count++] = one;
+    }
+    return count;
+}
+
+/* Where a place of the chart is: a triangle of the surface and the weights of its corners. */
+static const int *find(const struct RefMapSurface *on, const double theta[2], double weight[3])
+{
+    const RefPlaced *placed = ref_locator_at(&on->locator, theta, weight);
+    return on->triangles.vertex + 3 * placed->triangle;
+}
+
+static double chart_factor(const void *data, const double theta[2])
+{
+    const struct RefMapSurface *on = data;
+    double weight[3], sum = 0;
+    const int *vertex = find(on, theta, weight);
+    for (int i = 0; i < 3; i++) sum += weight[i] * on->factor[vertex[i]];
+    return sum;
+}
+
+static void chart_place(const void *data, const double theta[2], double x[3])
+{
+    const struct RefMapSurface *on = data;
+    double weight[3];
+    const int *vertex = find(on, theta, weight);
+    for (int d = 0; d < 3; d++) {
+        x[d] = 0;
+        for (int i = 0; i < 3; i++) x[d] += weight[i] * on->position[vertex[i]][d];
+    }
+}
+
+static void make_chart(const Plane *plane, RefSurfaceMap *map)
+{
+    RefChart *chart = &map->chart;
+    *chart = (RefChart){.high = {plane->side[0], plane->side[1]},
+                        .factor = chart_factor,
+                        .place = chart_place,
+                        .data = map->surface};
+    if (plane->kind == REF_MAP_ANNULUS) ref_chart_wrap(chart, true, false);
+    if (plane->kind == REF_MAP_TORUS) ref_chart_skew(chart, plane->shift);
+    if (plane->kind == REF_MAP_SPHERE) ref_chart_fold(chart, 0, plane->shift / 2);
+}
+
+/* What the mesh's vertices carry. */
+static void carry(const Plane *plane, RefSurfaceMap *map)
+{
+    const RefTriangulation *surface = &map->surface->triangles;
+    map->theta = sm_alloc((size_t)map->vertices, sizeof *map->theta);
+    map->factor = sm_alloc((size_t)map->vertices, sizeof *map->factor);
+    for (int c = 0; c < 3 * surface->triangles; c++) {
+        int v = surface->vertex[c], given = surface->source[v];
+        double theta[2];
+        for (int d = 0; d < 2; d++) theta[d] = plane->at[d][plane->surface->vertex[c]];
+        reduce(plane, theta);
+        for (int d = 0; d < 2; d++) map->theta[given][d] = fmin(fmax(theta[d], 0), plane->side[d]);
+        map->factor[given] = map->surface->factor[v];
+    }
+}
+
+/* The map from the plane. */
+static void finish(const Plane *plane, RefSurfaceMap *map)
+{
+    struct RefMapSurface *on = map->surface;
+    size_t count = (size_t)on->triangles.triangles;
+    RefPlaced *placed = sm_alloc(count, sizeof *placed), *image = NULL;
+    long images = 0, room = 0;
+    make_chart(plane, map);
+    for (size_t t = 0; t < count; t++) placed[t] = place_triangle(plane, (int)t);
+    find_factors(placed, on);
+    measure_angles(&on->triangles, placed, map);
+    measure_factors(&on->triangles, placed, map);
+    for (size_t t = 0; t < count; t++) {
+        sm_make_room(image, room, images + REF_MOST_SEAMS + 1);
+        images += add_images(&map->chart, placed + t, image + images);
+    }
+    ref_locator_create((int)images, image, &on->locator);
+    carry(plane, map);
+    free(placed);
+}
+
+static SmCode map_any(const char *name, RefSurfaceMap *map, SmError *error)
+{
+    struct RefMapSurface *on = map->surface;
+    const RefTriangulation *surface = &on->triangles;
+    RefTriangulation twice = {0};
+    double *weight = ref_harmonic_weights(surface, &map->clamped);
+    Plane plane = {.surface = surface};
+    SmCode code;
+    if (surface->genus == 0 && surface->rims == 1) {
+        plane.kind = REF_MAP_DISK;
+        code = map_disk(surface, (const double(*)[3])on->position, weight, &plane, error);
+    } else if (surface->genus == 0 && surface->rims == 2) {
+        plane.kind = REF_MAP_ANNULUS;
+        code = map_annulus(surface, weight, &plane, error);
+    } else if (surface->genus == 1 && surface->rims == 0) {
+        plane.kind = REF_MAP_TORUS;
+        code = map_torus(surface, weight, area_of(surface), 0, &plane, error);
+    } else if (surface->genus == 0 && surface->rims == 0) {
+        bool *cut = sm_alloc(3 * (size_t)surface->triangles, sizeof *cut);
+        int tip = ref_cuts_slits(surface, cut);
+        twice = ref_triangulation_twice(surface, cut);
+        plane.kind = REF_MAP_SPHERE;
+        plane.surface = &twice;
+        code = map_sphere(&twice, area_of(surface), twice.vertex[tip], &plane, error);
+        free(cut);
+    } else {
+        code = sm_fail(error, SM_INPUT,
+                       "%s: a surface of genus %d with %d rims: a shell can be a sheet with one "
+                       "rim, a tube with two, or a closed surface with one handle or none",
+                       name, surface->genus, surface->rims);
+    }
+    map->kind = plane.kind;
+    if (code == SM_OK) finish(&plane, map);
+    for (int d = 0; d < 2; d++) sm_free_all(plane.step[d], plane.at[d]);
+    ref_triangulation_free(&twice);
+    free(weight);
+    return code;
+}
+
+SmCode ref_surface_map_create(const SmMesh *mesh, const char *name, RefSurfaceMap *map,
+                              SmError *error)
+{
+    double from = sm_now();
+    *map = (RefSurfaceMap){.vertices = mesh->vertex_count};
+    map->surface = sm_alloc(1, sizeof *map->surface);
+    RefTriangulation *surface = &map->surface->triangles;
+    SmCode code = ref_triangulation_create(mesh, name, surface, error);
+    if (code == SM_OK) {
+        map->triangles = surface->triangles;
+        map->turned = ref_triangulation_delaunay(surface);
+        map->surface->position =
+            sm_alloc((size_t)surface->vertices, sizeof *map->surface->position);
+        for (long v = 0; v < surface->vertices; v++)
+            memcpy(map->surface->position[v], mesh->position[surface->source[v]],
+                   sizeof *map->surface->position);
+        code = map_any(name, map, error);
+    }
+    if (code != SM_OK) ref_surface_map_free(map);
+    map->seconds = sm_now() - from;
+    return code;
+}

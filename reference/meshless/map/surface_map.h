@@ -1,0 +1,48 @@
+/* surface_map.h - conformal parameters of a surface that is given by a mesh (meshless section 4.2;
+ * Gu and Yau 2003).
+ *
+ * Every surface here is a flat one, cut open to a rectangle:
+ *     a disk has four corners on its rim, and a rim along each side;
+ *     an annulus (a tube) closes around the first axis, with rims above and below;
+ *     a torus closes around both axes, with a shift;
+ *     a sphere is folded as a pillowcase is: taken twice and glued along two cuts it is a torus, of
+ *     which it is the half that half a turn leaves (chart.h).
+ * Harmonic one-forms of least periods are found on it (harmonic.h); their energies say the
+ * rectangle's shape, and their integrals are the parameters. The triangulation's edges are turned
+ * to a Delaunay one before, whose weights keep all triangles the right way up. */
+#ifndef REF_SURFACE_MAP_H
+#define REF_SURFACE_MAP_H
+
+#include "../../../lib/mesh/mesh.h"
+#include "../shell/chart.h"
+
+typedef enum { REF_MAP_DISK, REF_MAP_ANNULUS, REF_MAP_TORUS, REF_MAP_SPHERE } RefMapKind;
+
+typedef struct {
+    RefMapKind kind;
+    RefChart chart;     /* its area is the surface's; it lives as long as the map */
+    long vertices;      /* the mesh's */
+    double (*theta)[2]; /* [vertices] in the chart's rectangle */
+    double *factor;     /* [vertices] L */
+    /* Of the triangulation's angles, on the surface and in the plane: the median of the differences
+     * and what 95% of them are below, in degrees. */
+    double angle_median, angle_95;
+    double factor_low, factor_high; /* what L is below on 5% and 95% of the area */
+    long triangles, flips;          /* flips: triangles that are turned over in the plane */
+    long turned, clamped;           /* edges that were turned, and weights set to the least */
+    double seconds;
+    struct RefMapSurface *surface; /* private */
+} RefSurfaceMap;
+
+/* Maps the surface. The mesh has passed sm_mesh_prepare(), and is no longer needed afterwards;
+ * `name` is for messages. Two factorisations of [vertices], for a sphere one of [2 * vertices].
+ * The caller frees. Errors: triangulation.h's and solver.h's; SM_INPUT, a surface of another genus
+ * or of more rims. */
+SmCode ref_surface_map_create(const SmMesh *mesh, const char *name, RefSurfaceMap *map,
+                              SmError *error);
+void ref_surface_map_free(RefSurfaceMap *map);
+
+/* disk, annulus, torus or sphere. */
+const char *ref_map_kind_name(RefMapKind kind);
+
+#endif

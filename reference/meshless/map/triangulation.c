@@ -1,0 +1,379 @@
+#include "triangulation.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../../lib/mesh/edge.h"
+
+void ref_triangulation_free(RefTriangulation *surface)
+{
+    sm_free_all(surface->vertex, surface->twin, surface->length, surface->source, surface->corner,
+                surface->rim);
+    *surface = (RefTriangulation){0};
+}
+
+double ref_triangle_shape(const double length[3], double cotangent[3])
+{
+    double a = length[0], b = length[1], c = length[2], longest = fmax(a, fmax(b, c));
+    double middle = fmax(fmin(a, b), fmin(fmax(a, b), c)), least = fmin(a, fmin(b, c));
+    /* Kahan's order of Heron's factors */
+    double square = (longest + (middle + least)) * (least - (longest - middle)) *
+                    (least + (longest - middle)) * (longest + (middle - least));
+    double area = fmax(0.5 * sqrt(fmax(square, 0)), 1e-10 * longest * longest);
+    for (int i = 0; i < 3; i++) {
+        double next = length[i], last = length[(i + 2) % 3], across = length[(i + 1) % 3];
+        cotangent[i] = (next * next + last * last - across * across) / (2 * area);
+    }
+    return area;
+}
+
+/* All edges, those of the same vertices following each other, sorted by their lower vertex. */
+static SmEdge *sorted_edges(long vertices, long triangles, const int (*triangle)[3])
+{
+    long *start = sm_alloc((size_t)vertices + 2, sizeof *start);
+    SmEdge *edge = sm_alloc(3 * (size_t)triangles, sizeof *edge);
+    for (long c = 0; c < 3 * triangles; c++)
+        start[sm_edge(triangle[c / 3], (int)(c % 3), 0).low + 2]++;
+    for (long v = 0; v < vertices; v++) start[v + 2] += start[v + 1];
+    for (long c = 0; c < 3 * triangles; c++) {
+        SmEdge one = sm_edge(triangle[c / 3], (int)(c % 3), (int)c);
+        edge[start[one.low + 1]++] = one;
+    }
+    for (long v = 0; v < vertices; v++)
+        qsort(edge + start[v], (size_t)(start[v + 1] - start[v]), sizeof *edge, sm_compare_edges);
+    free(start);
+    return edge;
+}
+
+/* Glues corners whose edges are the same; an edge of more than two triangles is an error. */
+static SmCode glue(const SmMesh *mesh, const char *name, RefTriangulation *surface, SmError *error)
+{
+    const int(*triangle)[3] = (const int(*)[3])surface->vertex;
+    long corners = 3 * surface->triangles, most = 2, worst = 0;
+    SmEdge *edge = sorted_edges(mesh->vertex_count, surface->triangles, triangle);
+    for (long c = 0; c < corners; c++) surface->twin[c] = -1;
+    for (long e = 0, end; e < corners; e = end) {
+        for (end = e + 1; end < corners && sm_edges_same(edge + e, edge + end);) end++;
+        if (end - e > most) {
+            most = end - e;
+            worst = e;
+        }
+        if (end - e != 2) continue;
+        surface->twin[edge[e].corner] = edge[e + 1].corner;
+        surface->twin[edge[e + 1].corner] = edge[e].corner;
+    }
+    const double *at = mesh->position[edge[worst].low];
+    free(edge);
+    if (most == 2) return SM_OK;
+    return sm_fail(error, SM_INPUT,
+                   "%s: %ld triangles meet in one edge at (%g, %g, %g): a shell needs a surface "
+                   "with at most two; take out what hangs there",
+                   name, most, at[0], at[1], at[2]);
+}
+
+/* Turns a triangle round: its corners in the order 0 2 1. */
+static void turn_round(RefTriangulation *surface, long t)
+{
+    static const int edge_now[3] = {2, 1, 0}; /* which edge was the one of corner i */
+    int vertex[3], twin[3];
+    for (int i = 0; i < 3; i++) {
+        vertex[i] = surface->vertex[3 * t + (3 - i) % 3];
+        twin[i] = surface->twin[3 * t + edge_now[i]];
+    }
+    for (int i = 0; i < 3; i++) {
+        surface->vertex[3 * t + i] = vertex[i];
+        surface->twin[3 * t + i] = twin[i];
+        if (twin[i] >= 0) surface->twin[twin[i]] = (int)(3 * t + i);
+    }
+}
+
+/* Walks over the triangles from the first, turning round what disagrees; whether that went well,
+ * and how many triangles were reached. */
+static bool orient(RefTriangulation *surface, long *reached)
+{
+    int *queue = sm_alloc((size_t)surface->triangles, sizeof *queue);
+    bool *seen = sm_alloc((size_t)surface->triangles, sizeof *seen), sound = true;
+    long end = 1;
+    seen[0] = true;
+    for (long at = 0; at < end; at++)
+        for (int c = 3 * queue[at]; c < 3 * queue[at] + 3; c++) {
+            int twin = surface->twin[c];
+            if (twin < 0) continue;
+            bool disagree = surface->vertex[twin] == surface->vertex[c];
+            if (seen[twin / 3]) {
+                sound = sound && !disagree;
+                continue;
+            }
+            if (disagree) turn_round(surface, twin / 3);
+            seen[twin / 3] = true;
+            queue[end++] = twin / 3;
+        }
+    *reached = end;
+    free(queue);
+    free(seen);
+    return sound;
+}
+
+/* Gives every fan of corners a vertex of its own; `source` are the numbers that corners had. */
+static void number_fans(RefTriangulation *surface)
+{
+    size_t corners = 3 * (size_t)surface->triangles;
+    int *before = surface->vertex;
+    surface->vertex = sm_alloc(corners, sizeof *surface->vertex);
+    surface->source = sm_alloc(corners, sizeof *surface->source);
+    surface->corner = sm_alloc(corners, sizeof *surface->corner);
+    surface->vertices = 0;
+    for (size_t c = 0; c < corners; c++) surface->vertex[c] = -1;
+    for (int c = 0; c < (int)corners; c++) {
+        if (surface->vertex[c] >= 0) continue;
+        int first = c, right = ref_corner_right(surface, c);
+        for (; right >= 0 && right != c; right = ref_corner_right(surface, right)) first = right;
+        if (right >= 0) first = c;
+        surface->source[surface->vertices] = before[c];
+        surface->corner[surface->vertices] = first;
+        for (int at = first; at >= 0 && surface->vertex[at] < 0; at = ref_corner_left(surface, at))
+            surface->vertex[at] = (int)surface->vertices;
+        surface->vertices++;
+    }
+    free(before);
+}
+
+/* Rims, and the genus by Euler's formula. */
+static void count_rims(RefTriangulation *surface)
+{
+    long corners = 3 * surface->triangles, edges = 0;
+    surface->rims = 0;
+    surface->rim = sm_alloc((size_t)corners, sizeof *surface->rim);
+    for (int c = 0; c < corners; c++) surface->rim[c] = -1;
+    for (int c = 0; c < corners; c++) {
+        edges += surface->twin[c] < c;
+        if (surface->twin[c] >= 0 || surface->rim[c] >= 0) continue;
+        for (int at = c; surface->rim[at] < 0; at = ref_rim_next(surface, at))
+            surface->rim[at] = surface->rims;
+        surface->rims++;
+    }
+    long euler = surface->vertices - edges + surface->triangles;
+    surface->genus = (int)((2 - surface->rims - euler) / 2);
+}
+
+static int by_vertices(const void *a, const void *b)
+{
+    return memcmp(a, b, sizeof(int[3]));
+}
+
+/* The mesh's triangles but for those that are there already. */
+static void take_triangles(const SmMesh *mesh, RefTriangulation *surface)
+{
+    size_t count = (size_t)mesh->triangle_count;
+    int(*key)[4] = sm_alloc(count, sizeof *key);
+    for (size_t t = 0; t < count; t++) {
+        const int *v = mesh->triangle[t];
+        key[t][0] = v[0] < v[1] ? (v[0] < v[2] ? v[0] : v[2]) : (v[1] < v[2] ? v[1] : v[2]);
+        key[t][2] = v[0] > v[1] ? (v[0] > v[2] ? v[0] : v[2]) : (v[1] > v[2] ? v[1] : v[2]);
+        key[t][1] = v[0] + v[1] + v[2] - key[t][0] - key[t][2];
+        key[t][3] = (int)t;
+    }
+    qsort(key, count, sizeof *key, by_vertices);
+    bool *dropped = sm_alloc(count, sizeof *dropped);
+    for (size_t t = 1; t < count; t++)
+        if (by_vertices(key[t - 1], key[t]) == 0) dropped[key[t][3]] = true;
+    for (size_t t = 0; t < count; t++)
+        if (!dropped[t])
+            memcpy(surface->vertex + 3 * surface->triangles++, mesh->triangle[t], sizeof(int[3]));
+    free(key);
+    free(dropped);
+}
+
+SmCode ref_triangulation_create(const SmMesh *mesh, const char *name, RefTriangulation *surface,
+                                SmError *error)
+{
+    size_t corners = 3 * (size_t)mesh->triangle_count;
+    *surface = (RefTriangulation){.vertex = sm_alloc(corners, sizeof(int)),
+                                  .twin = sm_alloc(corners, sizeof(int)),
+                                  .length = sm_alloc(corners, sizeof(double))};
+    take_triangles(mesh, surface);
+    SmCode code = glue(mesh, name, surface, error);
+    long reached;
+    if (code == SM_OK && !orient(surface, &reached))
+        code = sm_fail(error, SM_INPUT,
+                       "%s: the surface has one side only, as a Moebius strip has: a shell needs "
+                       "two",
+                       name);
+    else if (code == SM_OK && reached < surface->triangles)
+        code = sm_fail(error, SM_INPUT,
+                       "%s: %ld of its %ld triangles do not hang together with the first by edges: "
+                       "give the shell one piece",
+                       name, surface->triangles - reached, surface->triangles);
+    if (code != SM_OK) {
+        ref_triangulation_free(surface);
+        return code;
+    }
+    number_fans(surface);
+    for (int c = 0; c < 3 * surface->triangles; c++) {
+        int ends[2] = {surface->vertex[c], surface->vertex[ref_corner_next(c)]};
+        surface->length[c] = sqrt(sm_square_between(mesh->position[surface->source[ends[0]]],
+                                                    mesh->position[surface->source[ends[1]]]));
+    }
+    count_rims(surface);
+    return SM_OK;
+}
+
+/* The cotangent at a corner. */
+static double cotangent_at(const RefTriangulation *surface, int corner)
+{
+    double cotangent[3];
+    ref_triangle_shape(surface->length + corner / 3 * 3, cotangent);
+    return cotangent[corner % 3];
+}
+
+/* Whether an edge joins a corner's vertex and another one. */
+static bool joined(const RefTriangulation *surface, int corner, int other)
+{
+    int at = corner;
+    do { /* to the left as far as it goes */
+        if (surface->vertex[ref_corner_next(at)] == other ||
+            surface->vertex[ref_corner_last(at)] == other)
+            return true;
+        at = ref_corner_left(surface, at);
+    } while (at >= 0 && at != corner);
+    if (at == corner) return false;
+    for (at = ref_corner_right(surface, corner); at >= 0; at = ref_corner_right(surface, at))
+        if (surface->vertex[ref_corner_next(at)] == other) return true;
+    return false;
+}
+
+/* Whether a vertex has three edges only and is not on a rim: it needs them. */
+static bool needs_edges(const RefTriangulation *surface, int corner)
+{
+    int at = corner, count = 0;
+    while (at >= 0 && count < 4) {
+        at = ref_corner_left(surface, at);
+        count++;
+        if (at == corner) return count <= 3;
+    }
+    return false;
+}
+
+/* The other diagonal of the four-sided figure that an edge's triangles make in the plane. */
+static double diagonal(const RefTriangulation *surface, int corner)
+{
+    int twin = surface->twin[corner];
+    double base = surface->length[corner], x[2], y[2];
+    const int side[2] = {ref_corner_last(corner), ref_corner_next(twin)};
+    for (int k = 0; k < 2; k++) { /* from the corner's vertex; one above and one below the edge */
+        double near = surface->length[side[k]];
+        double far = surface->length[k ? ref_corner_last(twin) : ref_corner_next(corner)];
+        double cotangent[3];
+        double area = ref_triangle_shape(surface->length + (k ? twin : corner) / 3 * 3, cotangent);
+        x[k] = (base * base + near * near - far * far) / (2 * base);
+        y[k] = (k ? -1 : 1) * area / base;
+    }
+    return hypot(x[1] - x[0], y[1] - y[0]);
+}
+
+/* Links two corners' edges. */
+static void join(RefTriangulation *surface, int corner, int twin)
+{
+    surface->twin[corner] = twin;
+    if (twin >= 0) surface->twin[twin] = corner;
+}
+
+/* Turns the edge a-b of triangles a b c and b a d: they become c a d and d b c. */
+static void turn_edge(RefTriangulation *surface, int ab, double length)
+{
+    int ba = surface->twin[ab];
+    int bc = ref_corner_next(ab), ca = ref_corner_last(ab);
+    int ad = ref_corner_next(ba), db = ref_corner_last(ba);
+    int vertex[4] = {surface->vertex[ab], surface->vertex[bc], surface->vertex[ca],
+                     surface->vertex[db]};
+    int outer[4] = {surface->twin[bc], surface->twin[ca], surface->twin[ad], surface->twin[db]};
+    double side[4] = {surface->length[bc], surface->length[ca], surface->length[ad],
+                      surface->length[db]};
+    /* ab, bc, ca become c-a, a-d, d-c; ba, ad, db become d-b, b-c, c-d */
+    const int corner[6] = {ab, bc, ca, ba, ad, db}, at[6] = {2, 0, 3, 3, 1, 2};
+    const int which[6] = {1, 2, -1, 3, 0, -1};
+    for (int k = 0; k < 6; k++) {
+        surface->vertex[corner[k]] = vertex[at[k]];
+        surface->length[corner[k]] = which[k] < 0 ? length : side[which[k]];
+        if (which[k] >= 0) join(surface, corner[k], outer[which[k]]);
+    }
+    join(surface, ca, db);
+    surface->corner[vertex[0]] = bc;
+    surface->corner[vertex[1]] = ad;
+    surface->corner[vertex[2]] = ab;
+    surface->corner[vertex[3]] = ba;
+}
+
+/* A vertex's corner is where its fan begins. */
+static void begin_fans(RefTriangulation *surface)
+{
+    for (long v = 0; v < surface->vertices; v++) {
+        int first = surface->corner[v], right;
+        while ((right = ref_corner_right(surface, first)) >= 0 && right != surface->corner[v])
+            first = right;
+        if (right < 0) surface->corner[v] = first;
+    }
+}
+
+/* Whether an edge has to be turned and may be. */
+static bool improves(const RefTriangulation *surface, int corner)
+{
+    int twin = surface->twin[corner];
+    if (twin < 0) return false;
+    int tip = ref_corner_last(corner), other = ref_corner_last(twin);
+    if (cotangent_at(surface, tip) + cotangent_at(surface, other) >= -1e-9) return false;
+    return surface->vertex[tip] != surface->vertex[other] && !needs_edges(surface, corner) &&
+           !needs_edges(surface, twin) && !joined(surface, tip, surface->vertex[other]);
+}
+
+long ref_triangulation_delaunay(RefTriangulation *surface)
+{
+    long corners = 3 * surface->triangles, count = corners, turned = 0, most = 20 * corners;
+    int *stack = sm_alloc((size_t)corners, sizeof *stack);
+    bool *waits = sm_alloc((size_t)corners, sizeof *waits);
+    for (int c = 0; c < corners; c++) {
+        stack[corners - 1 - c] = c;
+        waits[c] = true;
+    }
+    while (count > 0 && turned < most) {
+        int corner = stack[--count];
+        waits[corner] = false;
+        if (!improves(surface, corner)) continue;
+        int twin = surface->twin[corner];
+        turn_edge(surface, corner, diagonal(surface, corner));
+        turned++;
+        for (int k = 0; k < 6; k++) {
+            int again = (k < 3 ? corner : twin) / 3 * 3 + k % 3;
+            if (waits[again]) continue;
+            waits[again] = true;
+            stack[count++] = again;
+        }
+    }
+    free(stack);
+    free(waits);
+    begin_fans(surface);
+    free(surface->rim);
+    count_rims(surface);
+    return turned;
+}
+
+RefTriangulation ref_triangulation_twice(const RefTriangulation *surface, const bool *cut)
+{
+    int corners = (int)(3 * surface->triangles);
+    size_t all = 2 * (size_t)corners;
+    RefTriangulation twice = {.triangles = 2 * surface->triangles,
+                              .vertex = sm_alloc(all, sizeof(int)),
+                              .twin = sm_alloc(all, sizeof(int)),
+                              .length = sm_alloc(all, sizeof(double))};
+    for (int c = 0; c < 2 * corners; c++) {
+        int one = c % corners, sheet = c / corners;
+        if (cut[one]) sheet = !sheet;
+        twice.vertex[c] = surface->vertex[one];
+        twice.twin[c] = surface->twin[one] + sheet * corners;
+        twice.length[c] = surface->length[one];
+    }
+    number_fans(&twice);
+    count_rims(&twice);
+    return twice;
+}

@@ -1,0 +1,76 @@
+/* triangulation.h - triangles glued along their edges: a surface as its map's computation sees it.
+ *
+ * Corner 3 t + i is corner i of triangle t; the edge of a corner runs from it to the next one of
+ * its triangle. Lengths of edges, and nothing else, say how the surface bends, so that edges may be
+ * turned in the surface itself, and a surface may be taken twice. */
+#ifndef REF_TRIANGULATION_H
+#define REF_TRIANGULATION_H
+
+#include "../../../lib/mesh/mesh.h"
+
+typedef struct {
+    long triangles, vertices;
+    int *vertex;    /* [3 * triangles] at every corner */
+    int *twin;      /* [3 * triangles] the corner whose edge is the same one, or -1: a rim */
+    double *length; /* [3 * triangles] of every corner's edge */
+    int *source;    /* [vertices] the mesh's vertex that each is */
+    int *corner;    /* [vertices] one of its corners; on a rim the one whose edge is there */
+    int *rim;       /* [3 * triangles] which rim a corner's edge is on, or -1 */
+    int rims;       /* closed lines of edges without a twin */
+    int genus;
+} RefTriangulation;
+
+static inline int ref_corner_next(int corner)
+{
+    return corner % 3 == 2 ? corner - 2 : corner + 1;
+}
+
+static inline int ref_corner_last(int corner)
+{
+    return corner % 3 == 0 ? corner + 2 : corner - 1;
+}
+
+/* The next corner of the same vertex, to the right as seen from outside; -1 beyond a rim. */
+static inline int ref_corner_right(const RefTriangulation *surface, int corner)
+{
+    int twin = surface->twin[corner];
+    return twin < 0 ? -1 : ref_corner_next(twin);
+}
+
+/* And to the left. */
+static inline int ref_corner_left(const RefTriangulation *surface, int corner)
+{
+    return surface->twin[ref_corner_last(corner)];
+}
+
+/* The next corner along a rim. */
+static inline int ref_rim_next(const RefTriangulation *surface, int corner)
+{
+    return surface->corner[surface->vertex[ref_corner_next(corner)]];
+}
+
+/* Glues a mesh's triangles, turns those round that disagree with their neighbours, and parts a
+ * vertex at which several fans of triangles meet. Triangles of three corners that another one has
+ * too are dropped. The mesh has passed sm_mesh_prepare(); `name` is for messages. The caller frees.
+ * O(triangles). Errors (SM_INPUT): an edge of more than two triangles, a surface of one side only,
+ * several pieces. */
+SmCode ref_triangulation_create(const SmMesh *mesh, const char *name, RefTriangulation *surface,
+                                SmError *error);
+void ref_triangulation_free(RefTriangulation *surface);
+
+/* Turns edges until the two angles across each add up to half a turn at most: the Delaunay
+ * triangulation of the surface's own vertices (Bobenko and Springborn 2007). Cotangent weights are
+ * then not negative. Edges that would join what an edge joins already are left. Returns how many
+ * were turned. */
+long ref_triangulation_delaunay(RefTriangulation *surface);
+
+/* The surface taken twice, a closed one cut open along lines of edges and each sheet glued to the
+ * other there: `cut` is true for both corners of such edges, [3 * triangles]. Corner c is c of the
+ * first sheet and 3 * triangles + c of the second. The caller frees. */
+RefTriangulation ref_triangulation_twice(const RefTriangulation *surface, const bool *cut);
+
+/* Twice the area of a triangle, and the cotangents of its angles. A triangle without area counts as
+ * one of 1e-10 times its longest edge squared. */
+double ref_triangle_shape(const double length[3], double cotangent[3]);
+
+#endif
