@@ -65,7 +65,7 @@ static void choose(const double (*x)[3], const double *along, double whole, int 
     sm_free_all(turn, score, taken, near);
 }
 
-void ref_cuts_corners(const RefTriangulation *surface, const double (*position)[3], int corner[4])
+void ref_cuts_corners(const RefTriangulation *surface, int corner[4])
 {
     int first = 0, count = 0, place[4];
     while (surface->rim[first] < 0) first++;
@@ -77,7 +77,7 @@ void ref_cuts_corners(const RefTriangulation *surface, const double (*position)[
         rim[n] = at;
         along[n] = whole;
         whole += surface->length[at];
-        memcpy(x[n], position[surface->vertex[at]], sizeof *x);
+        memcpy(x[n], surface->position[surface->vertex[at]], sizeof *x);
     }
     choose((const double(*)[3])x, along, whole, count, place);
     for (int k = 0; k < 4; k++) corner[k] = rim[place[k]];

@@ -10,11 +10,13 @@
 #include "harmonic.h"
 #include "locate.h"
 
+/* Rims that are shorter, in roots of the area, are closed; the second where there are too many. */
+static const double hole = 0.1, largest_hole = 0.5;
+
 /* What the chart's functions know. */
 struct RefMapSurface {
     RefTriangulation triangles;
-    double (*position)[3]; /* [triangles.vertices] */
-    double *factor;        /* [triangles.vertices] */
+    double *factor; /* [triangles.vertices] */
     RefLocator locator;
 };
 
@@ -39,18 +41,10 @@ void ref_surface_map_free(RefSurfaceMap *map)
     if (map->surface) {
         ref_triangulation_free(&map->surface->triangles);
         ref_locator_free(&map->surface->locator);
-        sm_free_all(map->surface->position, map->surface->factor);
+        free(map->surface->factor);
     }
     sm_free_all(map->surface, map->theta, map->factor);
     *map = (RefSurfaceMap){.surface = NULL};
-}
-
-static double area_of(const RefTriangulation *surface)
-{
-    double area = 0, cotangent[3];
-    for (long t = 0; t < surface->triangles; t++)
-        area += ref_triangle_shape(surface->length + 3 * t, cotangent) / 2;
-    return area;
 }
 
 /* Moves a place into the rectangle by what makes it the same place of the surface; whether by half
@@ -97,12 +91,12 @@ static SmCode between(const RefTriangulation *surface, const double *weight,
 /* The rectangle of a disk: theta1 between two opposite parts of its rim, theta2 between the others.
  * Both energies are too large, by nearly as much: the rectangle's shape is the root of their
  * ratio. */
-static SmCode map_disk(const RefTriangulation *surface, const double (*position)[3],
-                       const double *weight, Plane *plane, SmError *error)
+static SmCode map_disk(const RefTriangulation *surface, const double *weight, Plane *plane,
+                       SmError *error)
 {
     int corner[4];
     unsigned char *part = sm_alloc((size_t)surface->vertices, sizeof *part);
-    ref_cuts_corners(surface, position, corner);
+    ref_cuts_corners(surface, corner);
     for (int k = 0, at = corner[0]; k < 4; k++) {
         do {
             part[surface->vertex[at]] |= 1 << k;
@@ -119,7 +113,7 @@ static SmCode map_disk(const RefTriangulation *surface, const double (*position)
     double energy[2];
     for (int d = 0; d < 2; d++)
         energy[d] = ref_harmonic_product(surface, weight, plane->step[d], plane->step[d]);
-    double ratio = sqrt(energy[0] / energy[1]), area = area_of(surface);
+    double ratio = sqrt(energy[0] / energy[1]), area = ref_triangulation_area(surface);
     plane->side[0] = sqrt(area / ratio);
     plane->side[1] = sqrt(area * ratio);
     for (int d = 0; d < 2; d++) {
@@ -150,7 +144,7 @@ static SmCode map_annulus(const RefTriangulation *surface, const double *weight,
     double energy[2];
     for (int d = 0; d < 2; d++)
         energy[d] = ref_harmonic_product(surface, weight, plane->step[d], plane->step[d]);
-    double ratio = sqrt(energy[0] / energy[1]), area = area_of(surface);
+    double ratio = sqrt(energy[0] / energy[1]), area = ref_triangulation_area(surface);
     plane->side[0] = sqrt(area / ratio);
     plane->side[1] = sqrt(area * ratio);
     for (int d = 0; d < 2; d++) {
@@ -348,7 +342,7 @@ static void chart_place(const void *data, const double theta[2], double x[3])
     const int *vertex = find(on, theta, weight);
     for (int d = 0; d < 3; d++) {
         x[d] = 0;
-        for (int i = 0; i < 3; i++) x[d] += weight[i] * on->position[vertex[i]][d];
+        for (int i = 0; i < 3; i++) x[d] += weight[i] * on->triangles.position[vertex[i]][d];
     }
 }
 
@@ -373,6 +367,7 @@ static void carry(const Plane *plane, RefSurfaceMap *map)
     for (int c = 0; c < 3 * surface->triangles; c++) {
         int v = surface->vertex[c], given = surface->source[v];
         double theta[2];
+        if (given < 0) continue;
         for (int d = 0; d < 2; d++) theta[d] = plane->at[d][plane->surface->vertex[c]];
         reduce(plane, theta);
         for (int d = 0; d < 2; d++) map->theta[given][d] = fmin(fmax(theta[d], 0), plane->side[d]);
@@ -411,20 +406,21 @@ static SmCode map_any(const char *name, RefSurfaceMap *map, SmError *error)
     SmCode code;
     if (surface->genus == 0 && surface->rims == 1) {
         plane.kind = REF_MAP_DISK;
-        code = map_disk(surface, (const double(*)[3])on->position, weight, &plane, error);
+        code = map_disk(surface, weight, &plane, error);
     } else if (surface->genus == 0 && surface->rims == 2) {
         plane.kind = REF_MAP_ANNULUS;
         code = map_annulus(surface, weight, &plane, error);
     } else if (surface->genus == 1 && surface->rims == 0) {
         plane.kind = REF_MAP_TORUS;
-        code = map_torus(surface, weight, area_of(surface), 0, &plane, error);
+        code = map_torus(surface, weight, ref_triangulation_area(surface), 0, &plane, error);
     } else if (surface->genus == 0 && surface->rims == 0) {
         bool *cut = sm_alloc(3 * (size_t)surface->triangles, sizeof *cut);
         int tip = ref_cuts_slits(surface, cut);
         twice = ref_triangulation_twice(surface, cut);
         plane.kind = REF_MAP_SPHERE;
         plane.surface = &twice;
-        code = map_sphere(&twice, area_of(surface), twice.vertex[tip], &plane, error);
+        code =
+            map_sphere(&twice, ref_triangulation_area(surface), twice.vertex[tip], &plane, error);
         free(cut);
     } else {
         code = sm_fail(error, SM_INPUT,
@@ -449,13 +445,11 @@ SmCode ref_surface_map_create(const SmMesh *mesh, const char *name, RefSurfaceMa
     RefTriangulation *surface = &map->surface->triangles;
     SmCode code = ref_triangulation_create(mesh, name, surface, error);
     if (code == SM_OK) {
+        map->closed = ref_triangulation_close(surface, hole);
+        if (surface->rims > (surface->genus == 0 ? 2 : 0))
+            map->closed += ref_triangulation_close(surface, largest_hole);
         map->triangles = surface->triangles;
         map->turned = ref_triangulation_delaunay(surface);
-        map->surface->position =
-            sm_alloc((size_t)surface->vertices, sizeof *map->surface->position);
-        for (long v = 0; v < surface->vertices; v++)
-            memcpy(map->surface->position[v], mesh->position[surface->source[v]],
-                   sizeof *map->surface->position);
         code = map_any(name, map, error);
     }
     if (code != SM_OK) ref_surface_map_free(map);

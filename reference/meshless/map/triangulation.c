@@ -9,7 +9,7 @@
 void ref_triangulation_free(RefTriangulation *surface)
 {
     sm_free_all(surface->vertex, surface->twin, surface->length, surface->source, surface->corner,
-                surface->rim);
+                surface->rim, surface->position);
     *surface = (RefTriangulation){0};
 }
 
@@ -210,13 +210,93 @@ SmCode ref_triangulation_create(const SmMesh *mesh, const char *name, RefTriangu
         return code;
     }
     number_fans(surface);
-    for (int c = 0; c < 3 * surface->triangles; c++) {
-        int ends[2] = {surface->vertex[c], surface->vertex[ref_corner_next(c)]};
-        surface->length[c] = sqrt(sm_square_between(mesh->position[surface->source[ends[0]]],
-                                                    mesh->position[surface->source[ends[1]]]));
-    }
+    surface->position = sm_alloc((size_t)surface->vertices, sizeof *surface->position);
+    for (long v = 0; v < surface->vertices; v++)
+        memcpy(surface->position[v], mesh->position[surface->source[v]], sizeof *surface->position);
+    for (int c = 0; c < 3 * surface->triangles; c++)
+        surface->length[c] =
+            sqrt(sm_square_between(surface->position[surface->vertex[c]],
+                                   surface->position[surface->vertex[ref_corner_next(c)]]));
     count_rims(surface);
     return SM_OK;
+}
+
+double ref_triangulation_area(const RefTriangulation *surface)
+{
+    double area = 0, cotangent[3];
+    for (long t = 0; t < surface->triangles; t++)
+        area += ref_triangle_shape(surface->length + 3 * t, cotangent) / 2;
+    return area;
+}
+
+/* A rim's edges, its length, and the mean of its vertices. */
+static long measure_rim(const RefTriangulation *surface, int first, double *length,
+                        double middle[3])
+{
+    long edges = 0;
+    *length = middle[0] = middle[1] = middle[2] = 0;
+    for (int at = first; edges == 0 || at != first; at = ref_rim_next(surface, at)) {
+        *length += surface->length[at];
+        for (int d = 0; d < 3; d++) middle[d] += surface->position[surface->vertex[at]][d];
+        edges++;
+    }
+    for (int d = 0; d < 3; d++) middle[d] /= (double)edges;
+    return edges;
+}
+
+/* Links two corners' edges. */
+static void join(RefTriangulation *surface, int corner, int twin)
+{
+    surface->twin[corner] = twin;
+    if (twin >= 0) surface->twin[twin] = corner;
+}
+
+/* A triangle of each of the rim's edges and its middle. */
+static void fill_rim(RefTriangulation *surface, int first, const double middle[3], long edges)
+{
+    long from = 3 * surface->triangles, corners = from + 3 * edges, v = surface->vertices++;
+    surface->triangles += edges;
+    surface->vertex = sm_realloc(surface->vertex, (size_t)corners, sizeof *surface->vertex);
+    surface->twin = sm_realloc(surface->twin, (size_t)corners, sizeof *surface->twin);
+    surface->length = sm_realloc(surface->length, (size_t)corners, sizeof *surface->length);
+    surface->source = sm_realloc(surface->source, (size_t)v + 1, sizeof *surface->source);
+    surface->corner = sm_realloc(surface->corner, (size_t)v + 1, sizeof *surface->corner);
+    surface->position = sm_realloc(surface->position, (size_t)v + 1, sizeof *surface->position);
+    surface->source[v] = -1;
+    surface->corner[v] = (int)from + 2;
+    memcpy(surface->position[v], middle, sizeof *surface->position);
+    for (int n = 0, at = first; n < edges; n++) { /* corners: the rim's next vertex, this, middle */
+        int c = (int)from + 3 * n, next = ref_rim_next(surface, at);
+        int end[2] = {surface->vertex[next], surface->vertex[at]};
+        for (int k = 0; k < 2; k++) surface->vertex[c + k] = end[k];
+        surface->vertex[c + 2] = (int)v;
+        surface->length[c] = surface->length[at];
+        surface->length[c + 1] = sqrt(sm_square_between(surface->position[end[1]], middle));
+        surface->length[c + 2] = sqrt(sm_square_between(surface->position[end[0]], middle));
+        surface->twin[c] = at;
+        surface->twin[c + 2] = (int)from + 3 * (int)((n + 1) % edges) + 1;
+        surface->twin[c + 1] = (int)from + 3 * (int)((n + edges - 1) % edges) + 2;
+        at = next;
+    }
+    for (long c = from; c < corners; c += 3) surface->twin[surface->twin[c]] = (int)c;
+}
+
+int ref_triangulation_close(RefTriangulation *surface, double limit)
+{
+    double longest = limit * sqrt(ref_triangulation_area(surface)), length, middle[3];
+    long corners = 3 * surface->triangles;
+    int closed = 0;
+    for (int rim = 0; rim < surface->rims; rim++) {
+        int first = 0;
+        while (first < corners && surface->rim[first] != rim) first++;
+        long edges = measure_rim(surface, first, &length, middle);
+        if (length > longest) continue;
+        fill_rim(surface, first, middle, edges);
+        closed++;
+    }
+    free(surface->rim);
+    count_rims(surface);
+    return closed;
 }
 
 /* The cotangent at a corner. */
@@ -270,13 +350,6 @@ static double diagonal(const RefTriangulation *surface, int corner)
         y[k] = (k ? -1 : 1) * area / base;
     }
     return hypot(x[1] - x[0], y[1] - y[0]);
-}
-
-/* Links two corners' edges. */
-static void join(RefTriangulation *surface, int corner, int twin)
-{
-    surface->twin[corner] = twin;
-    if (twin >= 0) surface->twin[twin] = corner;
 }
 
 /* Turns the edge a-b of triangles a b c and b a d: they become c a d and d b c. */

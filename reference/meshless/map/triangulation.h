@@ -10,13 +10,14 @@
 
 typedef struct {
     long triangles, vertices;
-    int *vertex;    /* [3 * triangles] at every corner */
-    int *twin;      /* [3 * triangles] the corner whose edge is the same one, or -1: a rim */
-    double *length; /* [3 * triangles] of every corner's edge */
-    int *source;    /* [vertices] the mesh's vertex that each is */
-    int *corner;    /* [vertices] one of its corners; on a rim the one whose edge is there */
-    int *rim;       /* [3 * triangles] which rim a corner's edge is on, or -1 */
-    int rims;       /* closed lines of edges without a twin */
+    int *vertex;           /* [3 * triangles] at every corner */
+    int *twin;             /* [3 * triangles] the corner whose edge is the same one, or -1: a rim */
+    double *length;        /* [3 * triangles] of every corner's edge */
+    int *source;           /* [vertices] the mesh's vertex that each is, or -1: a hole's middle */
+    double (*position)[3]; /* [vertices] */
+    int *corner;           /* [vertices] one of its corners; on a rim the one whose edge is there */
+    int *rim;              /* [3 * triangles] which rim a corner's edge is on, or -1 */
+    int rims;              /* closed lines of edges without a twin */
     int genus;
 } RefTriangulation;
 
@@ -57,6 +58,12 @@ static inline int ref_rim_next(const RefTriangulation *surface, int corner)
 SmCode ref_triangulation_create(const SmMesh *mesh, const char *name, RefTriangulation *surface,
                                 SmError *error);
 void ref_triangulation_free(RefTriangulation *surface);
+
+/* Closes rims that are shorter than `limit` times the root of the surface's area, with triangles
+ * around the middle of each; returns how many. */
+int ref_triangulation_close(RefTriangulation *surface, double limit);
+
+double ref_triangulation_area(const RefTriangulation *surface);
 
 /* Turns edges until the two angles across each add up to half a turn at most: the Delaunay
  * triangulation of the surface's own vertices (Bobenko and Springborn 2007). Cotangent weights are
