@@ -290,7 +290,7 @@ int ref_triangulation_close(RefTriangulation *surface, double limit)
         int first = 0;
         while (first < corners && surface->rim[first] != rim) first++;
         long edges = measure_rim(surface, first, &length, middle);
-        if (length > longest) continue;
+        if (length > longest && edges >= 4) continue;
         fill_rim(surface, first, middle, edges);
         closed++;
     }

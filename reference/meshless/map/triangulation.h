@@ -59,8 +59,8 @@ SmCode ref_triangulation_create(const SmMesh *mesh, const char *name, RefTriangu
                                 SmError *error);
 void ref_triangulation_free(RefTriangulation *surface);
 
-/* Closes rims that are shorter than `limit` times the root of the surface's area, with triangles
- * around the middle of each; returns how many. */
+/* Closes rims that are shorter than `limit` times the root of the surface's area or have fewer than
+ * four edges, with triangles around the middle of each; returns how many. */
 int ref_triangulation_close(RefTriangulation *surface, double limit);
 
 double ref_triangulation_area(const RefTriangulation *surface);

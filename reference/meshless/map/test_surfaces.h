@@ -1,0 +1,87 @@
+/* test_surfaces.h - irregular meshes of surfaces that are known, for the tests. */
+#ifndef REF_TEST_SURFACES_H
+#define REF_TEST_SURFACES_H
+
+#include "../../../lib/mesh/mesh.h"
+#include "../../../lib/test_frame.h"
+#include "../../../lib/test_random.h"
+
+typedef void Place(double u, double v, double x[3]);
+
+/* A grid of cells over the unit square, closed around where said, each halved along a random
+ * diagonal, its vertices moved by up to `noise` cells but on rims. */
+static inline SmMesh grid_mesh(int across, int up, bool around, bool both, Place *place,
+                               double noise, unsigned *seed)
+{
+    int columns = across + !around, rows = up + !both;
+    SmMesh mesh = sm_mesh_new((long)columns * rows, 2L * across * up);
+    for (int n = 0; n < columns * rows; n++) {
+        double at[2] = {n % columns, n / columns};
+        int side[2] = {around ? -1 : across, both ? -1 : up};
+        for (int d = 0; d < 2; d++)
+            if (side[d] < 0 || (at[d] > 0 && at[d] < side[d]))
+                at[d] += random_between(seed, -noise, noise);
+        place(at[0] / across, at[1] / up, mesh.position[n]);
+    }
+    for (int n = 0; n < across * up; n++) {
+        int i[2] = {n % across, (n % across + 1) % columns};
+        int j[2] = {n / across, (n / across + 1) % rows}, corner[4];
+        for (int k = 0; k < 4; k++) corner[k] = j[k / 2] * columns + i[(k ^ (k / 2)) & 1];
+        int from = random_int(seed, 2);
+        for (int k = 0; k < 3; k++) {
+            mesh.triangle[2 * n][k] = corner[(from + k) % 4];
+            mesh.triangle[2 * n + 1][k] = corner[(from + 2 + k) % 4];
+        }
+    }
+    return mesh;
+}
+
+/* A unit sphere of 8 n^2 triangles, those of an octahedron split, its vertices moved by up to
+ * `noise` edges. */
+static inline SmMesh sphere_mesh(int n, double noise, unsigned *seed)
+{
+    SmMesh mesh = sm_mesh_new(4L * (n + 1) * (n + 2), 8L * n * n);
+    long vertex = 0, triangle = 0;
+    for (int face = 0; face < 8; face++) {
+        int sign[3] = {face & 1 ? -1 : 1, face & 2 ? -1 : 1, face & 4 ? -1 : 1};
+        bool mirrored = sign[0] * sign[1] * sign[2] < 0;
+        for (int i = 0; i <= n; i++)
+            for (int j = 0; j <= n - i; j++) {
+                double share[3] = {i, j, n - i - j};
+                for (int d = 0; d < 3; d++) mesh.position[vertex][d] = sign[d] * share[d] / n;
+                int here = (int)vertex, above = (int)(vertex + n - i + 1);
+                int corner[2][3] = {{here, above, here + 1}, {above, above + 1, here + 1}};
+                for (int k = 0; k < 2 && j < n - i - k; k++, triangle++)
+                    for (int c = 0; c < 3; c++)
+                        mesh.triangle[triangle][mirrored ? 2 - c : c] = corner[k][c];
+                vertex++;
+            }
+    }
+    sm_mesh_merge(&mesh);
+    for (long v = 0; v < mesh.vertex_count; v++) {
+        sm_normalize(mesh.position[v]);
+        for (int d = 0; d < 3; d++) mesh.position[v][d] += random_between(seed, -noise, noise) / n;
+        sm_normalize(mesh.position[v]);
+    }
+    return mesh;
+}
+
+static inline void random_move(unsigned *seed, SmMesh *mesh)
+{
+    double axis[2][3], third[3];
+    for (int k = 0; k < 2; k++)
+        for (int d = 0; d < 3; d++) axis[k][d] = random_between(seed, -1, 1);
+    sm_normalize(axis[0]);
+    double along = sm_dot(axis[0], axis[1]);
+    for (int d = 0; d < 3; d++) axis[1][d] -= along * axis[0][d];
+    sm_normalize(axis[1]);
+    sm_cross(axis[0], axis[1], third);
+    for (long v = 0; v < mesh->vertex_count; v++) {
+        double x[3];
+        memcpy(x, mesh->position[v], sizeof x);
+        for (int d = 0; d < 3; d++)
+            mesh->position[v][d] = x[0] * axis[0][d] + x[1] * axis[1][d] + x[2] * third[d];
+    }
+}
+
+#endif
