@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "harmonic.h"
+
 /* The way along the rim between two of its places. */
 static double apart(double whole, double a, double b)
 {
@@ -175,25 +177,101 @@ static void slit(Search *s, int from, int to, bool *cut)
         cut[at] = cut[s->surface->twin[at]] = !cut[at];
 }
 
-int ref_cuts_slits(const RefTriangulation *surface, bool *cut)
+enum { CANDIDATES = 20 };
+
+/* 2 pi less the angles at every vertex, and the vertices' shares of the area. */
+static void bend(const RefTriangulation *surface, double *curvature, double *share)
 {
-    size_t count = (size_t)surface->vertices;
+    double whole = ref_triangulation_area(surface), cotangent[3];
+    for (long v = 0; v < surface->vertices; v++) curvature[v] = 2 * M_PI;
+    for (long t = 0; t < surface->triangles; t++) {
+        double area = ref_triangle_shape(surface->length + 3 * t, cotangent) / 2;
+        for (int i = 0; i < 3; i++) {
+            curvature[surface->vertex[3 * t + i]] -= atan2(1, cotangent[i]);
+            share[surface->vertex[3 * t + i]] += area / 3 / whole;
+        }
+    }
+}
+
+/* Moves a function to the mean 0 over the area. */
+static void centre(long count, const double *share, double *u)
+{
+    double mean = 0;
+    for (long v = 0; v < count; v++) mean += share[v] * u[v];
+    for (long v = 0; v < count; v++) u[v] -= mean;
+}
+
+/* The four of `count` functions whose sum is nearest to the last one, the function `count`. */
+static void choose_four(int count, double product[CANDIDATES + 1][CANDIDATES + 1], int best[4])
+{
+    double least = INFINITY;
+    int pick[4];
+    for (pick[0] = 0; pick[0] < count; pick[0]++)
+        for (pick[1] = 0; pick[1] < pick[0]; pick[1]++)
+            for (pick[2] = 0; pick[2] < pick[1]; pick[2]++)
+                for (pick[3] = 0; pick[3] < pick[2]; pick[3]++) {
+                    double sum = 0;
+                    for (int i = 0; i < 4; i++) {
+                        sum -= 2 * product[pick[i]][count];
+                        for (int j = 0; j < 4; j++) sum += product[pick[i]][pick[j]];
+                    }
+                    if (!(sum < least)) continue;
+                    least = sum;
+                    memcpy(best, pick, sizeof pick);
+                }
+}
+
+/* Of the candidates, the four that let log L vary least. */
+static SmCode choose_tips(const RefTriangulation *surface, const double *weight, int count,
+                          const int *candidate, int tip[4], SmError *error)
+{
+    double *u[CANDIDATES + 1], product[CANDIDATES + 1][CANDIDATES + 1] = {{0}};
+    double *share = sm_alloc((size_t)surface->vertices, sizeof *share);
+    int best[4] = {0};
+    for (int k = 0; k <= count; k++) u[k] = sm_alloc((size_t)surface->vertices, sizeof **u);
+    for (int k = 0; k < count; k++) u[k][candidate[k]] = M_PI;
+    bend(surface, u[count], share);
+    SmCode code = ref_harmonic_potentials(surface, weight, count + 1, u, u, error);
+    if (code == SM_OK) {
+        for (int k = 0; k <= count; k++) centre(surface->vertices, share, u[k]);
+        for (int i = 0; i <= count; i++)
+            for (int j = 0; j <= i; j++) {
+                for (long v = 0; v < surface->vertices; v++)
+                    product[i][j] += share[v] * u[i][v] * u[j][v];
+                product[j][i] = product[i][j];
+            }
+        choose_four(count, product, best);
+        for (int k = 0; k < 4; k++) tip[k] = candidate[best[k]];
+    }
+    for (int k = 0; k <= count; k++) free(u[k]);
+    free(share);
+    return code;
+}
+
+SmCode ref_cuts_slits(const RefTriangulation *surface, const double *weight, bool *cut, int *tip,
+                      SmError *error)
+{
+    size_t size = (size_t)surface->vertices;
     Search s = {.surface = surface,
-                .distance = sm_alloc(count, sizeof(double)),
-                .from = sm_alloc(count, sizeof(int)),
-                .heap = sm_alloc(count, sizeof(int)),
-                .slot = sm_alloc(count, sizeof(int))};
-    int tip[4];
+                .distance = sm_alloc(size, sizeof(double)),
+                .from = sm_alloc(size, sizeof(int)),
+                .heap = sm_alloc(size, sizeof(int)),
+                .slot = sm_alloc(size, sizeof(int))};
+    int candidate[CANDIDATES], count = size < CANDIDATES ? (int)size : CANDIDATES, tips[4];
     forget(&s);
     search_from(&s, 0);
-    tip[0] = farthest(&s);
+    candidate[0] = farthest(&s);
     forget(&s);
-    for (int k = 0; k < 3; k++) {
-        search_from(&s, tip[k]);
-        tip[k + 1] = farthest(&s);
+    for (int k = 1; k < count; k++) {
+        search_from(&s, candidate[k - 1]);
+        candidate[k] = farthest(&s);
     }
-    slit(&s, tip[0], tip[1], cut);
-    slit(&s, tip[2], tip[3], cut);
+    SmCode code = choose_tips(surface, weight, count, candidate, tips, error);
+    if (code == SM_OK) {
+        slit(&s, tips[0], tips[1], cut);
+        slit(&s, tips[2], tips[3], cut);
+        *tip = surface->corner[tips[0]];
+    }
     sm_free_all(s.distance, s.from, s.heap, s.slot);
-    return surface->corner[tip[0]];
+    return code;
 }

@@ -10,8 +10,13 @@
 void ref_cuts_corners(const RefTriangulation *surface, int corner[4]);
 
 /* Marks two slits of a closed surface of genus 0: shortest ways along edges between four vertices,
- * each the farthest from those before it, which so are at the ends of what sticks out. Returns a
- * corner of one of the four. `cut` is [3 * triangles] and zero. O(n log n). */
-int ref_cuts_slits(const RefTriangulation *surface, bool *cut);
+ * about each of which the plane gets half a turn. They are those four of a few, far from one
+ * another, that let log L vary least over the surface's area, as the conformal factor of a flat
+ * metric with so much of a turn there says: sum_j w_ij (u_i - u_j) = target_i - curvature_i for u =
+ * -log L (Springborn, Schroeder and Pinkall 2008, section 3; Ben-Chen, Gotsman and Bunin 2008).
+ * `tip` becomes a corner of one of them. `cut` is [3 * triangles] and zero. One factorisation of
+ * [vertices]. Errors: solver.h's. */
+SmCode ref_cuts_slits(const RefTriangulation *surface, const double *weight, bool *cut, int *tip,
+                      SmError *error);
 
 #endif

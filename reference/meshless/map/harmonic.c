@@ -144,6 +144,25 @@ SmCode ref_harmonic_solve(const RefTriangulation *surface, const double *weight,
     return code;
 }
 
+SmCode ref_harmonic_potentials(const RefTriangulation *surface, const double *weight, int count,
+                               double *const *source, double *const *u, SmError *error)
+{
+    RefSolver *solver;
+    int *number = sm_alloc((size_t)surface->vertices, sizeof *number);
+    int columns = number_free(surface, NULL, number);
+    RefMatrices sums = {.stiffness = laplacian(surface, weight, number, columns)};
+    SmCode code = ref_solver_create(&sums, 0, NULL, &solver, error);
+    ref_matrices_free(&sums);
+    free(number);
+    if (code != SM_OK) return code;
+    for (int n = 0; n < count; n++) {
+        ref_solver_solve(solver, source[n] + 1, NULL, u[n] + 1);
+        u[n][0] = 0;
+    }
+    ref_solver_destroy(solver);
+    return SM_OK;
+}
+
 double ref_harmonic_product(const RefTriangulation *surface, const double *weight, const double *a,
                             const double *b)
 {

@@ -20,6 +20,12 @@ double *ref_harmonic_weights(const RefTriangulation *surface, long *clamped);
 SmCode ref_harmonic_solve(const RefTriangulation *surface, const double *weight, const bool *held,
                           int count, double *const *form, SmError *error);
 
+/* Functions u of sources that add up to 0 over a closed surface: sum_j w_ij (u_i - u_j) = source_i,
+ * 0 at the first vertex, which also takes what is left where they do not add up. `source` and `u`
+ * are `count` times [vertices], and may be the same. Errors: solver.h's. */
+SmCode ref_harmonic_potentials(const RefTriangulation *surface, const double *weight, int count,
+                               double *const *source, double *const *u, SmError *error);
+
 /* sum_ij w_ij a_ij b_ij over the edges. */
 double ref_harmonic_product(const RefTriangulation *surface, const double *weight, const double *a,
                             const double *b);

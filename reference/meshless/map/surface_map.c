@@ -415,12 +415,15 @@ static SmCode map_any(const char *name, RefSurfaceMap *map, SmError *error)
         code = map_torus(surface, weight, ref_triangulation_area(surface), 0, &plane, error);
     } else if (surface->genus == 0 && surface->rims == 0) {
         bool *cut = sm_alloc(3 * (size_t)surface->triangles, sizeof *cut);
-        int tip = ref_cuts_slits(surface, cut);
-        twice = ref_triangulation_twice(surface, cut);
+        int tip;
         plane.kind = REF_MAP_SPHERE;
-        plane.surface = &twice;
-        code =
-            map_sphere(&twice, ref_triangulation_area(surface), twice.vertex[tip], &plane, error);
+        code = ref_cuts_slits(surface, weight, cut, &tip, error);
+        if (code == SM_OK) {
+            twice = ref_triangulation_twice(surface, cut);
+            plane.surface = &twice;
+            code = map_sphere(&twice, ref_triangulation_area(surface), twice.vertex[tip], &plane,
+                              error);
+        }
         free(cut);
     } else {
         code = sm_fail(error, SM_INPUT,
