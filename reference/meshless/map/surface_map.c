@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "../../../lib/system/clock.h"
+#include "../surface/local_triangles.h"
 #include "cuts.h"
 #include "harmonic.h"
 #include "locate.h"
@@ -439,23 +440,46 @@ static SmCode map_any(const char *name, RefSurfaceMap *map, SmError *error)
     return code;
 }
 
+/* Maps what a mesh has; `share` and `edges` say what is dropped and closed. */
+static SmCode map_mesh(const SmMesh *mesh, const char *name, double share, long edges,
+                       RefSurfaceMap *map, SmError *error)
+{
+    *map = (RefSurfaceMap){.vertices = mesh->vertex_count};
+    map->surface = sm_alloc(1, sizeof *map->surface);
+    RefTriangulation *surface = &map->surface->triangles;
+    SmCode code = ref_triangulation_create(mesh, name, share, surface, error);
+    if (code == SM_OK) {
+        map->closed = ref_triangulation_close(surface, hole, edges);
+        if (surface->rims > (surface->genus == 0 ? 2 : 0))
+            map->closed += ref_triangulation_close(surface, largest_hole, edges);
+        map->turned = ref_triangulation_delaunay(surface);
+        ref_triangulation_split(surface);
+        map->triangles = surface->triangles;
+        code = map_any(name, map, error);
+    }
+    if (code != SM_OK) ref_surface_map_free(map);
+    return code;
+}
+
 SmCode ref_surface_map_create(const SmMesh *mesh, const char *name, RefSurfaceMap *map,
                               SmError *error)
 {
     double from = sm_now();
-    *map = (RefSurfaceMap){.vertices = mesh->vertex_count};
-    map->surface = sm_alloc(1, sizeof *map->surface);
-    RefTriangulation *surface = &map->surface->triangles;
-    SmCode code = ref_triangulation_create(mesh, name, surface, error);
-    if (code == SM_OK) {
-        map->closed = ref_triangulation_close(surface, hole);
-        if (surface->rims > (surface->genus == 0 ? 2 : 0))
-            map->closed += ref_triangulation_close(surface, largest_hole);
-        map->triangles = surface->triangles;
-        map->turned = ref_triangulation_delaunay(surface);
-        code = map_any(name, map, error);
-    }
-    if (code != SM_OK) ref_surface_map_free(map);
+    SmCode code = map_mesh(mesh, name, 0, 3, map, error);
+    map->seconds = sm_now() - from;
+    return code;
+}
+
+SmCode ref_surface_map_of_points(long count, const double (*position)[3], const double (*normal)[3],
+                                 const char *name, RefSurfaceMap *map, SmError *error)
+{
+    double from = sm_now();
+    SmMesh mesh;
+    *map = (RefSurfaceMap){.surface = NULL};
+    SmCode code = ref_local_triangles(count, position, normal, name, &mesh, error);
+    if (code != SM_OK) return code;
+    code = map_mesh(&mesh, name, 0.05, 12, map, error);
+    sm_mesh_free(&mesh);
     map->seconds = sm_now() - from;
     return code;
 }

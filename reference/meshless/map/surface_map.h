@@ -43,6 +43,12 @@ typedef struct {
  * another genus or of more rims. */
 SmCode ref_surface_map_create(const SmMesh *mesh, const char *name, RefSurfaceMap *map,
                               SmError *error);
+
+/* The same of points, by the triangles between them (surface/local_triangles.h), of which pieces of
+ * up to 5% are dropped; also rims of up to twelve edges are closed. `normal` may be NULL. Errors
+ * also: local_triangles.h's. */
+SmCode ref_surface_map_of_points(long count, const double (*position)[3], const double (*normal)[3],
+                                 const char *name, RefSurfaceMap *map, SmError *error);
 void ref_surface_map_free(RefSurfaceMap *map);
 
 /* disk, annulus, torus or sphere. */

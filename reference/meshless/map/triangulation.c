@@ -88,31 +88,78 @@ static void turn_round(RefTriangulation *surface, long t)
     }
 }
 
-/* Walks over the triangles from the first, turning round what disagrees; whether that went well,
- * and how many triangles were reached. */
-static bool orient(RefTriangulation *surface, long *reached)
+/* Walks over the triangles from one, turning round what disagrees, and says in `piece` that they
+ * are of this one; returns how many there are, or -1 where that cannot be done. */
+static long orient(RefTriangulation *surface, int from, int number, int *piece, int *queue)
 {
-    int *queue = sm_alloc((size_t)surface->triangles, sizeof *queue);
-    bool *seen = sm_alloc((size_t)surface->triangles, sizeof *seen), sound = true;
+    bool sound = true;
     long end = 1;
-    seen[0] = true;
+    queue[0] = from;
+    piece[from] = number;
     for (long at = 0; at < end; at++)
         for (int c = 3 * queue[at]; c < 3 * queue[at] + 3; c++) {
             int twin = surface->twin[c];
             if (twin < 0) continue;
             bool disagree = surface->vertex[twin] == surface->vertex[c];
-            if (seen[twin / 3]) {
+            if (piece[twin / 3] >= 0) {
                 sound = sound && !disagree;
                 continue;
             }
             if (disagree) turn_round(surface, twin / 3);
-            seen[twin / 3] = true;
+            piece[twin / 3] = number;
             queue[end++] = twin / 3;
         }
-    *reached = end;
-    free(queue);
-    free(seen);
-    return sound;
+    return sound ? end : -1;
+}
+
+/* Keeps the triangles of one piece. */
+static void keep_piece(RefTriangulation *surface, const int *piece, int number)
+{
+    int *to = sm_alloc((size_t)surface->triangles, sizeof *to), kept = 0;
+    for (long t = 0; t < surface->triangles; t++)
+        if (piece[t] == number) to[t] = kept++;
+    for (int c = 0; c < 3 * surface->triangles; c++) {
+        if (piece[c / 3] != number) continue;
+        int at = 3 * to[c / 3] + c % 3, twin = surface->twin[c];
+        surface->vertex[at] = surface->vertex[c];
+        surface->twin[at] = twin < 0 ? -1 : 3 * to[twin / 3] + twin % 3;
+    }
+    surface->triangles = kept;
+    free(to);
+}
+
+/* Orients the largest piece and keeps it, where the others have no more than `share`. */
+static SmCode take_piece(RefTriangulation *surface, const char *name, double share, SmError *error)
+{
+    size_t count = (size_t)surface->triangles;
+    int *piece = sm_alloc(count, sizeof *piece), *queue = sm_alloc(count, sizeof *queue);
+    int pieces = 0, best = 0;
+    long largest = 0;
+    bool sound = true;
+    for (size_t t = 0; t < count; t++) piece[t] = -1;
+    for (size_t t = 0; t < count; t++) {
+        if (piece[t] >= 0) continue;
+        long held = orient(surface, (int)t, pieces, piece, queue);
+        sound = sound && held > 0;
+        if (held > largest) {
+            largest = held;
+            best = pieces;
+        }
+        pieces++;
+    }
+    keep_piece(surface, piece, best);
+    sm_free_all(piece, queue);
+    if (!sound)
+        return sm_fail(error, SM_INPUT,
+                       "%s: the surface has one side only, as a Moebius strip has: a shell needs "
+                       "two",
+                       name);
+    if ((double)largest >= (1 - share) * (double)count) return SM_OK;
+    return sm_fail(
+        error, SM_INPUT,
+        "%s: %d surfaces that do not hang together by edges, the largest with %ld of %zu "
+        "triangles: give the shell one",
+        name, pieces, largest, count);
 }
 
 /* Gives every fan of corners a vertex of its own; `source` are the numbers that corners had. */
@@ -185,8 +232,8 @@ static void take_triangles(const SmMesh *mesh, RefTriangulation *surface)
     free(dropped);
 }
 
-SmCode ref_triangulation_create(const SmMesh *mesh, const char *name, RefTriangulation *surface,
-                                SmError *error)
+SmCode ref_triangulation_create(const SmMesh *mesh, const char *name, double share,
+                                RefTriangulation *surface, SmError *error)
 {
     size_t corners = 3 * (size_t)mesh->triangle_count;
     *surface = (RefTriangulation){.vertex = sm_alloc(corners, sizeof(int)),
@@ -194,17 +241,7 @@ SmCode ref_triangulation_create(const SmMesh *mesh, const char *name, RefTriangu
                                   .length = sm_alloc(corners, sizeof(double))};
     take_triangles(mesh, surface);
     SmCode code = glue(mesh, name, surface, error);
-    long reached;
-    if (code == SM_OK && !orient(surface, &reached))
-        code = sm_fail(error, SM_INPUT,
-                       "%s: the surface has one side only, as a Moebius strip has: a shell needs "
-                       "two",
-                       name);
-    else if (code == SM_OK && reached < surface->triangles)
-        code = sm_fail(error, SM_INPUT,
-                       "%s: %ld of its %ld triangles do not hang together with the first by edges: "
-                       "give the shell one piece",
-                       name, surface->triangles - reached, surface->triangles);
+    if (code == SM_OK) code = take_piece(surface, name, share, error);
     if (code != SM_OK) {
         ref_triangulation_free(surface);
         return code;
@@ -251,17 +288,26 @@ static void join(RefTriangulation *surface, int corner, int twin)
     if (twin >= 0) surface->twin[twin] = corner;
 }
 
+/* Makes room for more triangles and vertices. */
+static void widen(RefTriangulation *surface, long triangles, long vertices)
+{
+    size_t corners = 3 * (size_t)(surface->triangles + triangles);
+    size_t count = (size_t)(surface->vertices + vertices);
+    surface->vertex = sm_realloc(surface->vertex, corners, sizeof *surface->vertex);
+    surface->twin = sm_realloc(surface->twin, corners, sizeof *surface->twin);
+    surface->length = sm_realloc(surface->length, corners, sizeof *surface->length);
+    surface->source = sm_realloc(surface->source, count, sizeof *surface->source);
+    surface->corner = sm_realloc(surface->corner, count, sizeof *surface->corner);
+    surface->position = sm_realloc(surface->position, count, sizeof *surface->position);
+}
+
 /* A triangle of each of the rim's edges and its middle. */
 static void fill_rim(RefTriangulation *surface, int first, const double middle[3], long edges)
 {
-    long from = 3 * surface->triangles, corners = from + 3 * edges, v = surface->vertices++;
+    long from = 3 * surface->triangles, corners = from + 3 * edges, v = surface->vertices;
+    widen(surface, edges, 1);
     surface->triangles += edges;
-    surface->vertex = sm_realloc(surface->vertex, (size_t)corners, sizeof *surface->vertex);
-    surface->twin = sm_realloc(surface->twin, (size_t)corners, sizeof *surface->twin);
-    surface->length = sm_realloc(surface->length, (size_t)corners, sizeof *surface->length);
-    surface->source = sm_realloc(surface->source, (size_t)v + 1, sizeof *surface->source);
-    surface->corner = sm_realloc(surface->corner, (size_t)v + 1, sizeof *surface->corner);
-    surface->position = sm_realloc(surface->position, (size_t)v + 1, sizeof *surface->position);
+    surface->vertices++;
     surface->source[v] = -1;
     surface->corner[v] = (int)from + 2;
     memcpy(surface->position[v], middle, sizeof *surface->position);
@@ -281,7 +327,7 @@ static void fill_rim(RefTriangulation *surface, int first, const double middle[3
     for (long c = from; c < corners; c += 3) surface->twin[surface->twin[c]] = (int)c;
 }
 
-int ref_triangulation_close(RefTriangulation *surface, double limit)
+int ref_triangulation_close(RefTriangulation *surface, double limit, long most)
 {
     double longest = limit * sqrt(ref_triangulation_area(surface)), length, middle[3];
     long corners = 3 * surface->triangles;
@@ -290,7 +336,7 @@ int ref_triangulation_close(RefTriangulation *surface, double limit)
         int first = 0;
         while (first < corners && surface->rim[first] != rim) first++;
         long edges = measure_rim(surface, first, &length, middle);
-        if (length > longest && edges >= 4) continue;
+        if (length > longest && edges > most) continue;
         fill_rim(surface, first, middle, edges);
         closed++;
     }
@@ -429,6 +475,64 @@ long ref_triangulation_delaunay(RefTriangulation *surface)
     free(surface->rim);
     count_rims(surface);
     return turned;
+}
+
+/* Puts a vertex in the middle of the edge a-b of triangles a b c and b a d: they become a m c and
+ * b m d, and behind all others come m b c and m a d. */
+static void halve_edge(RefTriangulation *surface, int ab)
+{
+    int ba = surface->twin[ab], bc = ref_corner_next(ab), ad = ref_corner_next(ba);
+    int mb = (int)(3 * surface->triangles), ma = mb + 3, m = (int)surface->vertices++;
+    const int kept[2] = {ab, ba}, side[2] = {bc, ad}, added[2] = {mb, ma};
+    surface->triangles += 2;
+    int a = surface->vertex[ab], b = surface->vertex[bc];
+    double whole = surface->length[ab];
+    for (int d = 0; d < 3; d++)
+        surface->position[m][d] = (surface->position[a][d] + surface->position[b][d]) / 2;
+    surface->source[m] = -1;
+    surface->corner[m] = bc;
+    for (int k = 0; k < 2; k++) {
+        int end = k ? a : b, last = ref_corner_last(kept[k]), far = side[k], one = added[k];
+        double long_side = surface->length[far], other = surface->length[last];
+        double middle =
+            sqrt(fmax((2 * long_side * long_side + 2 * other * other - whole * whole) / 4, 0));
+        if (surface->corner[end] == far) surface->corner[end] = one + 1;
+        surface->vertex[far] = surface->vertex[one] = m;
+        surface->vertex[one + 1] = end;
+        surface->vertex[one + 2] = surface->vertex[last];
+        join(surface, one + 1, surface->twin[far]);
+        join(surface, one + 2, far);
+        surface->length[kept[k]] = surface->length[one] = whole / 2;
+        surface->length[one + 1] = long_side;
+        surface->length[one + 2] = surface->length[far] = middle;
+    }
+    join(surface, ab, ma);
+    join(surface, ba, mb);
+}
+
+/* Whether a corner's edge lies inside and joins two vertices of one rim. */
+static bool is_chord(const RefTriangulation *surface, const int *rim, int corner)
+{
+    int from = rim[surface->vertex[corner]], to = rim[surface->vertex[ref_corner_next(corner)]];
+    return surface->twin[corner] >= 0 && from >= 0 && from == to;
+}
+
+long ref_triangulation_split(RefTriangulation *surface)
+{
+    long count = 0;
+    for (int c = 0; c < 3 * surface->triangles; c++) count += surface->twin[c] > c;
+    int *rim = sm_alloc((size_t)(surface->vertices + count), sizeof *rim);
+    for (long v = 0; v < surface->vertices + count; v++)
+        rim[v] = v < surface->vertices ? surface->rim[surface->corner[v]] : -1;
+    count = 0;
+    for (int c = 0; c < 3 * surface->triangles; c++)
+        count += surface->twin[c] > c && is_chord(surface, rim, c);
+    widen(surface, 2 * count, count);
+    for (int c = 0; c < 3 * surface->triangles; c++) /* what moves, moves to later corners */
+        if (is_chord(surface, rim, c)) halve_edge(surface, c);
+    sm_free_all(rim, surface->rim);
+    count_rims(surface);
+    return count;
 }
 
 RefTriangulation ref_triangulation_twice(const RefTriangulation *surface, const bool *cut)

@@ -13,7 +13,7 @@ typedef struct {
     int *vertex;           /* [3 * triangles] at every corner */
     int *twin;             /* [3 * triangles] the corner whose edge is the same one, or -1: a rim */
     double *length;        /* [3 * triangles] of every corner's edge */
-    int *source;           /* [vertices] the mesh's vertex that each is, or -1: a hole's middle */
+    int *source;           /* [vertices] the mesh's vertex that each is, or -1: a new one */
     double (*position)[3]; /* [vertices] */
     int *corner;           /* [vertices] one of its corners; on a rim the one whose edge is there */
     int *rim;              /* [3 * triangles] which rim a corner's edge is on, or -1 */
@@ -52,16 +52,17 @@ static inline int ref_rim_next(const RefTriangulation *surface, int corner)
 
 /* Glues a mesh's triangles, turns those round that disagree with their neighbours, and parts a
  * vertex at which several fans of triangles meet. Triangles of three corners that another one has
- * too are dropped. The mesh has passed sm_mesh_prepare(); `name` is for messages. The caller frees.
- * O(triangles). Errors (SM_INPUT): an edge of more than two triangles, a surface of one side only,
- * several pieces. */
-SmCode ref_triangulation_create(const SmMesh *mesh, const char *name, RefTriangulation *surface,
-                                SmError *error);
+ * too are dropped, and of several pieces all but the largest, if they have no more than `share` of
+ * the triangles. The mesh has passed sm_mesh_check() and has no triangle that repeats a vertex;
+ * `name` is for messages. The caller frees. O(triangles). Errors (SM_INPUT): an edge of more than
+ * two triangles, a surface of one side only, other pieces. */
+SmCode ref_triangulation_create(const SmMesh *mesh, const char *name, double share,
+                                RefTriangulation *surface, SmError *error);
 void ref_triangulation_free(RefTriangulation *surface);
 
-/* Closes rims that are shorter than `limit` times the root of the surface's area or have fewer than
- * four edges, with triangles around the middle of each; returns how many. */
-int ref_triangulation_close(RefTriangulation *surface, double limit);
+/* Closes rims that are shorter than `limit` times the root of the surface's area, or have at most
+ * so many edges, with triangles around the middle of each; returns how many. */
+int ref_triangulation_close(RefTriangulation *surface, double limit, long edges);
 
 double ref_triangulation_area(const RefTriangulation *surface);
 
@@ -70,6 +71,10 @@ double ref_triangulation_area(const RefTriangulation *surface);
  * then not negative. Edges that would join what an edge joins already are left. Returns how many
  * were turned. */
 long ref_triangulation_delaunay(RefTriangulation *surface);
+
+/* Halves edges inside that join two vertices of one rim, so that nothing lies between an edge and a
+ * straight rim; returns how many. */
+long ref_triangulation_split(RefTriangulation *surface);
 
 /* The surface taken twice, a closed one cut open along lines of edges and each sheet glued to the
  * other there: `cut` is true for both corners of such edges, [3 * triangles]. Corner c is c of the
