@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "../../../lib/system/clock.h"
+#include "../surface/cloud.h"
 #include "../surface/local_triangles.h"
 #include "cuts.h"
 #include "harmonic.h"
@@ -17,7 +18,8 @@ static const double hole = 0.1, largest_hole = 0.5;
 /* What the chart's functions know. */
 struct RefMapSurface {
     RefTriangulation triangles;
-    double *factor; /* [triangles.vertices] */
+    double *factor;    /* [triangles.vertices] */
+    RefPlaced *placed; /* [triangles.triangles] in the plane */
     RefLocator locator;
 };
 
@@ -42,7 +44,7 @@ void ref_surface_map_free(RefSurfaceMap *map)
     if (map->surface) {
         ref_triangulation_free(&map->surface->triangles);
         ref_locator_free(&map->surface->locator);
-        free(map->surface->factor);
+        sm_free_all(map->surface->factor, map->surface->placed);
     }
     sm_free_all(map->surface, map->theta, map->factor);
     *map = (RefSurfaceMap){.surface = NULL};
@@ -359,6 +361,89 @@ static void make_chart(const Plane *plane, RefSurfaceMap *map)
     if (plane->kind == REF_MAP_SPHERE) ref_chart_fold(chart, 0, plane->shift / 2);
 }
 
+/* The weights of a triangle's corners at its place that is nearest to x; returns the square of the
+ * distance. */
+static double nearest_in(const double *const corner[3], const double x[3], double weight[3])
+{
+    double normal[3], area[3], square, best = INFINITY;
+    sm_area_vector(corner[0], corner[1], corner[2], normal);
+    square = sm_dot(normal, normal);
+    double share[3], least = -1;
+    for (int i = 0; i < 3 && square > 0; i++) {
+        sm_area_vector(x, corner[(i + 1) % 3], corner[(i + 2) % 3], area);
+        share[i] = sm_dot(area, normal) / square;
+        least = i == 0 ? share[i] : fmin(least, share[i]);
+    }
+    if (square > 0 && least >= 0) {
+        double way[3], up;
+        memcpy(weight, share, sizeof share);
+        sm_subtract(x, corner[0], way);
+        up = sm_dot(way, normal);
+        return up * up / square;
+    }
+    for (int i = 0; i < 3; i++) {
+        const double *from = corner[i], *to = corner[(i + 1) % 3];
+        double edge[3], way[3], foot[3];
+        sm_subtract(to, from, edge);
+        sm_subtract(x, from, way);
+        double length = sm_dot(edge, edge), along = length > 0 ? sm_dot(way, edge) / length : 0;
+        along = fmin(fmax(along, 0), 1);
+        for (int d = 0; d < 3; d++) foot[d] = from[d] + along * edge[d];
+        double off = sm_square_between(foot, x);
+        if (!(off < best)) continue;
+        best = off;
+        weight[i] = 1 - along;
+        weight[(i + 1) % 3] = along;
+        weight[(i + 2) % 3] = 0;
+    }
+    return best;
+}
+
+/* Tries the triangles around a vertex for the place that is nearest to x. */
+static void try_around(const struct RefMapSurface *on, int vertex, const double x[3], double *best,
+                       double theta[2])
+{
+    const RefTriangulation *surface = &on->triangles;
+    int first = surface->corner[vertex], at = first;
+    do {
+        const double *corner[3];
+        const RefPlaced *placed = on->placed + at / 3;
+        double weight[3] = {1};
+        for (int i = 0; i < 3; i++) corner[i] = surface->position[surface->vertex[at / 3 * 3 + i]];
+        double off = nearest_in(corner, x, weight);
+        if (off < *best) {
+            *best = off;
+            for (int d = 0; d < 2; d++)
+                theta[d] = weight[0] * placed->corner[0][d] + weight[1] * placed->corner[1][d] +
+                           weight[2] * placed->corner[2][d];
+        }
+        at = ref_corner_left(surface, at);
+    } while (at >= 0 && at != first);
+}
+
+void ref_surface_map_feet(const RefSurfaceMap *map, long count, const double (*x)[3],
+                          double (*theta)[2])
+{
+    enum { AROUND = 4 };
+    const RefTriangulation *surface = &map->surface->triangles;
+    double(*none)[3] = sm_alloc((size_t)surface->vertices, sizeof *none);
+    RefPoints points = {.count = surface->vertices, .position = surface->position, .normal = none};
+    RefCloud cloud;
+    ref_cloud_create(&points, &cloud);
+    for (long p = 0; p < count; p++) {
+        long near[AROUND];
+        double distance[AROUND], best = INFINITY;
+        int found = ref_cloud_nearest(&cloud, x[p], AROUND, near, distance);
+        theta[p][0] = theta[p][1] = 0;
+        for (int n = 0; n < found; n++)
+            try_around(map->surface, (int)near[n], x[p], &best, theta[p]);
+        ref_chart_enter(&map->chart, theta[p]);
+        for (int d = 0; d < 2; d++) theta[p][d] = fmin(fmax(theta[p][d], 0), map->chart.high[d]);
+    }
+    ref_cloud_free(&cloud);
+    free(none);
+}
+
 /* What the mesh's vertices carry. */
 static void carry(const Plane *plane, RefSurfaceMap *map)
 {
@@ -376,12 +461,32 @@ static void carry(const Plane *plane, RefSurfaceMap *map)
     }
 }
 
+/* The same for vertices that have no triangle. */
+static void carry_others(const double (*position)[3], RefSurfaceMap *map)
+{
+    size_t size = (size_t)map->vertices;
+    long count = 0;
+    long *which = sm_alloc(size, sizeof *which);
+    double(*x)[3] = sm_alloc(size, sizeof *x), (*theta)[2] = sm_alloc(size, sizeof *theta);
+    for (long v = 0; v < map->vertices; v++)
+        if (map->factor[v] == 0) {
+            memcpy(x[count], position[v], sizeof *x);
+            which[count++] = v;
+        }
+    if (count) ref_surface_map_feet(map, count, (const double(*)[3])x, theta);
+    for (long n = 0; n < count; n++) {
+        memcpy(map->theta[which[n]], theta[n], sizeof *theta);
+        map->factor[which[n]] = map->chart.factor(map->chart.data, theta[n]);
+    }
+    sm_free_all(which, x, theta);
+}
+
 /* The map from the plane. */
 static void finish(const Plane *plane, RefSurfaceMap *map)
 {
     struct RefMapSurface *on = map->surface;
     size_t count = (size_t)on->triangles.triangles;
-    RefPlaced *placed = sm_alloc(count, sizeof *placed), *image = NULL;
+    RefPlaced *placed = on->placed = sm_alloc(count, sizeof *placed), *image = NULL;
     long images = 0, room = 0;
     make_chart(plane, map);
     for (size_t t = 0; t < count; t++) placed[t] = place_triangle(plane, (int)t);
@@ -394,45 +499,64 @@ static void finish(const Plane *plane, RefSurfaceMap *map)
     }
     ref_locator_create((int)images, image, &on->locator);
     carry(plane, map);
-    free(placed);
+}
+
+/* The sphere's plane, by the surface taken twice, which is the caller's to free. */
+static SmCode unfold(const RefTriangulation *surface, const double *weight, RefTriangulation *twice,
+                     Plane *plane, SmError *error)
+{
+    bool *cut = sm_alloc(3 * (size_t)surface->triangles, sizeof *cut);
+    int tip;
+    SmCode code = ref_cuts_slits(surface, weight, cut, &tip, error);
+    if (code == SM_OK) {
+        *twice = ref_triangulation_twice(surface, cut);
+        plane->surface = twice;
+        code = map_sphere(twice, ref_triangulation_area(surface), twice->vertex[tip], plane, error);
+    }
+    free(cut);
+    return code;
+}
+
+static bool has_map(const RefTriangulation *surface, RefMapKind *kind)
+{
+    static const RefMapKind closed[] = {REF_MAP_SPHERE, REF_MAP_TORUS};
+    static const RefMapKind open[] = {REF_MAP_DISK, REF_MAP_ANNULUS};
+    if (surface->rims == 0 && surface->genus < 2)
+        *kind = closed[surface->genus];
+    else if (surface->genus == 0 && surface->rims < 3)
+        *kind = open[surface->rims - 1];
+    else
+        return false;
+    return true;
 }
 
 static SmCode map_any(const char *name, RefSurfaceMap *map, SmError *error)
 {
-    struct RefMapSurface *on = map->surface;
-    const RefTriangulation *surface = &on->triangles;
-    RefTriangulation twice = {0};
-    double *weight = ref_harmonic_weights(surface, &map->clamped);
+    const RefTriangulation *surface = &map->surface->triangles;
     Plane plane = {.surface = surface};
-    SmCode code;
-    if (surface->genus == 0 && surface->rims == 1) {
-        plane.kind = REF_MAP_DISK;
-        code = map_disk(surface, weight, &plane, error);
-    } else if (surface->genus == 0 && surface->rims == 2) {
-        plane.kind = REF_MAP_ANNULUS;
-        code = map_annulus(surface, weight, &plane, error);
-    } else if (surface->genus == 1 && surface->rims == 0) {
-        plane.kind = REF_MAP_TORUS;
-        code = map_torus(surface, weight, ref_triangulation_area(surface), 0, &plane, error);
-    } else if (surface->genus == 0 && surface->rims == 0) {
-        bool *cut = sm_alloc(3 * (size_t)surface->triangles, sizeof *cut);
-        int tip;
-        plane.kind = REF_MAP_SPHERE;
-        code = ref_cuts_slits(surface, weight, cut, &tip, error);
-        if (code == SM_OK) {
-            twice = ref_triangulation_twice(surface, cut);
-            plane.surface = &twice;
-            code = map_sphere(&twice, ref_triangulation_area(surface), twice.vertex[tip], &plane,
-                              error);
-        }
-        free(cut);
-    } else {
-        code = sm_fail(error, SM_INPUT,
+    if (!has_map(surface, &plane.kind))
+        return sm_fail(error, SM_INPUT,
                        "%s: a surface of genus %d with %d rims: a shell can be a sheet with one "
                        "rim, a tube with two, or a closed surface with one handle or none",
                        name, surface->genus, surface->rims);
-    }
+    RefTriangulation twice = {0};
+    double *weight = ref_harmonic_weights(surface, &map->clamped);
+    SmCode code = SM_OK;
     map->kind = plane.kind;
+    switch (plane.kind) {
+    case REF_MAP_DISK:
+        code = map_disk(surface, weight, &plane, error);
+        break;
+    case REF_MAP_ANNULUS:
+        code = map_annulus(surface, weight, &plane, error);
+        break;
+    case REF_MAP_TORUS:
+        code = map_torus(surface, weight, ref_triangulation_area(surface), 0, &plane, error);
+        break;
+    case REF_MAP_SPHERE:
+        code = unfold(surface, weight, &twice, &plane, error);
+        break;
+    }
     if (code == SM_OK) finish(&plane, map);
     for (int d = 0; d < 2; d++) sm_free_all(plane.step[d], plane.at[d]);
     ref_triangulation_free(&twice);
@@ -457,6 +581,7 @@ static SmCode map_mesh(const SmMesh *mesh, const char *name, double share, long 
         map->triangles = surface->triangles;
         code = map_any(name, map, error);
     }
+    if (code == SM_OK) carry_others((const double(*)[3])mesh->position, map);
     if (code != SM_OK) ref_surface_map_free(map);
     return code;
 }

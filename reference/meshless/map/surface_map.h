@@ -22,7 +22,8 @@ typedef struct {
     RefMapKind kind;
     RefChart chart;     /* its area is the surface's; it lives as long as the map */
     long vertices;      /* the mesh's */
-    double (*theta)[2]; /* [vertices] in the chart's rectangle */
+    double (*theta)[2]; /* [vertices] in the chart's rectangle; of those that no triangle has, or
+                           a piece that was dropped, that of the nearest place */
     double *factor;     /* [vertices] L */
     /* Of the triangulation's angles, on the surface and in the plane: the median of the differences
      * and what 95% of them are below, in degrees. */
@@ -49,6 +50,13 @@ SmCode ref_surface_map_create(const SmMesh *mesh, const char *name, RefSurfaceMa
  * also: local_triangles.h's. */
 SmCode ref_surface_map_of_points(long count, const double (*position)[3], const double (*normal)[3],
                                  const char *name, RefSurfaceMap *map, SmError *error);
+
+/* The parameters of points near the surface: those of the nearest place of the triangles around the
+ * four vertices that are nearest to each. What the mesh's vertices have is map->theta. O(log n) for
+ * each point, after O(n log n). */
+void ref_surface_map_feet(const RefSurfaceMap *map, long count, const double (*x)[3],
+                          double (*theta)[2]);
+
 void ref_surface_map_free(RefSurfaceMap *map);
 
 /* disk, annulus, torus or sphere. */

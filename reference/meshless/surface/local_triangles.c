@@ -322,7 +322,7 @@ static bool inside(const double a[2], const double b[2], const double x[2])
 static bool overlap_at(const Work *work, int p, const int a[3], const int b[3])
 {
     double side[2][2][2];
-    int end[2][2];
+    int end[2][2] = {{0}};
     for (int t = 0; t < 2; t++) {
         const int *triangle = t ? b : a;
         for (int k = 0, found = 0; k < 3; k++)
