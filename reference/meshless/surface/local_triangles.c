@@ -17,6 +17,7 @@ typedef struct {
     long count;
     const double (*position)[3];
     int (*near)[NEAR + 1]; /* [count] the nearest points, itself among them, or -1 */
+    bool *again;           /* [count] at the position of an earlier point: has no triangle */
     double (*normal)[3];   /* [count] of unit length */
     double (*axis)[2][3];  /* [count] across the normals */
     long claims, room;
@@ -157,7 +158,7 @@ static void claim_around(Work *work, long p)
     for (int n = 0; n <= NEAR && near[n] >= 0; n++) {
         double distance = sqrt(sm_square_between(work->position[p], work->position[near[n]]));
         flatten(work, p, near[n], way);
-        if (hypot(way[0], way[1]) > 0.7 * distance &&
+        if (!work->again[near[n]] && hypot(way[0], way[1]) > 0.7 * distance &&
             sm_dot(work->normal[p], work->normal[near[n]]) > 0)
             clip(&cell, way, near[n]);
     }
@@ -175,6 +176,8 @@ static void find_near(Work *work, const RefCloud *cloud)
     for (long p = 0; p < work->count; p++) {
         int found = ref_cloud_nearest(cloud, work->position[p], NEAR + 1, near, distance);
         for (int n = 0; n <= NEAR; n++) work->near[p][n] = n < found ? (int)near[n] : -1;
+        for (int n = 0; n < found && distance[n] == 0; n++)
+            work->again[p] = work->again[p] || near[n] < p;
     }
 }
 
@@ -270,18 +273,6 @@ static void find_planes(Work *work, const double (*normal)[3])
     choose_sides(work, settled);
     for (long p = 0; p < work->count; p++) span(work->normal[p], work->axis[p]);
     free(settled);
-}
-
-/* One of several points at a position has claims: the first. */
-static void claim_all(Work *work)
-{
-    for (long p = 0; p < work->count; p++) {
-        bool first = true;
-        for (int n = 0; n <= NEAR && work->near[p][n] >= 0; n++)
-            if (sm_square_between(work->position[p], work->position[work->near[p][n]]) == 0)
-                first = first && work->near[p][n] >= p;
-        if (first) claim_around(work, p);
-    }
 }
 
 static int by_points(const void *a, const void *b)
@@ -425,6 +416,7 @@ SmCode ref_local_triangles(long count, const double (*position)[3], const double
     Work work = {.count = count,
                  .position = position,
                  .near = sm_alloc(size, sizeof *work.near),
+                 .again = sm_alloc(size, sizeof *work.again),
                  .normal = sm_alloc(size, sizeof *work.normal),
                  .axis = sm_alloc(size, sizeof *work.axis),
                  .around = sm_alloc(size, sizeof *work.around),
@@ -436,10 +428,12 @@ SmCode ref_local_triangles(long count, const double (*position)[3], const double
     find_near(&work, &cloud);
     ref_cloud_free(&cloud);
     find_planes(&work, normal);
-    claim_all(&work);
+    for (long p = 0; p < count; p++)
+        if (!work.again[p]) claim_around(&work, p);
     count_votes(&work);
     take_all(&work);
-    sm_free_all(work.near, work.normal, work.axis, work.claim, work.around, work.degree);
+    sm_free_all(work.near, work.again, work.normal, work.axis, work.claim, work.around,
+                work.degree);
     if (mesh->triangle_count > 0) return SM_OK;
     sm_mesh_free(mesh);
     return sm_fail(error, SM_INPUT, "%s: the %ld points lie in no surface", name, count);
