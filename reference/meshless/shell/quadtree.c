@@ -164,7 +164,8 @@ static double leaves_of(const RefChart *chart, int across, double threshold)
     return leaves;
 }
 
-/* They fall as the threshold grows, by leaps. */
+/* They fall as the threshold grows, by leaps. A bracket is found from above, where trees are small.
+ */
 SmCode ref_quadtree_of(const RefChart *chart, int across, long wanted, RefQuadtree *tree,
                        SmError *error)
 {
@@ -175,9 +176,14 @@ SmCode ref_quadtree_of(const RefChart *chart, int across, long wanted, RefQuadtr
     plant(chart, across, tree);
     for (long n = 0; n < tree->count; n++) high = fmax(high, edge_on_surface(tree, tree->cell + n));
     ref_quadtree_free(tree);
-    double low = high / (1 << REF_QUADTREE_LEVELS);
-    for (int n = 0; n < 20; n++) {
-        double threshold = sqrt(low * high), leaves = leaves_of(chart, across, threshold);
+    double low = high, least = high / (1 << REF_QUADTREE_LEVELS);
+    while (low > least && !(leaves_of(chart, across, low) > (double)wanted)) {
+        high = low;
+        low /= 2;
+    }
+    for (int n = 0; n < 16; n++) {
+        double threshold = n == 0 ? high : sqrt(low * high);
+        double leaves = leaves_of(chart, across, threshold);
         double off = fabs(log(leaves / (double)wanted));
         if (off < best) {
             best = off;

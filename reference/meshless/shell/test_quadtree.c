@@ -50,7 +50,7 @@ TEST(cells_are_balanced_across_rims_and_seams)
 {
     for (int trial = 0; trial < 18; trial++) {
         Waves waves;
-        RefChart chart = chart_of_kind(&seed, trial % CHART_KINDS, 0.7, &waves);
+        RefChart chart = chart_of_kind(&seed, trial % CHART_KINDS, 100, 0.7, &waves);
         RefQuadtree tree = quadtree_of(&chart, 3, 300 + 20 * trial);
         assert_true(fabs((double)tree.leaves / (300 + 20 * trial) - 1) < 0.1);
         check_cells(&tree);
