@@ -573,6 +573,7 @@ static SmCode map_mesh(const SmMesh *mesh, const char *name, double share, long 
     RefTriangulation *surface = &map->surface->triangles;
     SmCode code = ref_triangulation_create(mesh, name, share, surface, error);
     if (code == SM_OK) {
+        map->dropped = mesh->triangle_count - surface->triangles;
         map->closed = ref_triangulation_close(surface, hole, edges);
         if (surface->rims > (surface->genus == 0 ? 2 : 0))
             map->closed += ref_triangulation_close(surface, largest_hole, edges);
@@ -590,7 +591,7 @@ SmCode ref_surface_map_create(const SmMesh *mesh, const char *name, RefSurfaceMa
                               SmError *error)
 {
     double from = sm_now();
-    SmCode code = map_mesh(mesh, name, 0, 3, map, error);
+    SmCode code = map_mesh(mesh, name, 0.01, 3, map, error);
     map->seconds = sm_now() - from;
     return code;
 }

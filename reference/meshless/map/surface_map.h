@@ -29,19 +29,21 @@ typedef struct {
      * and what 95% of them are below, in degrees. */
     double angle_median, angle_95;
     double factor_low, factor_high; /* what L is below on 5% and 95% of the area */
-    int closed;                     /* short rims, taken for holes of a scan and closed */
-    long triangles, flips;          /* flips: triangles that are turned over in the plane */
-    long turned, clamped;           /* edges that were turned, and weights set to the least */
+    long dropped;          /* the mesh's triangles that are doubled, or of small other pieces */
+    int closed;            /* short rims, taken for holes of a scan and closed */
+    long triangles, flips; /* flips: triangles that are turned over in the plane */
+    long turned, clamped;  /* edges that were turned, and weights set to the least */
     double seconds;
     struct RefMapSurface *surface; /* private */
 } RefSurfaceMap;
 
-/* Maps the surface. Rims that are shorter than a tenth of the root of the area are closed first,
- * each with a vertex in its middle, and where there are more rims than a map may have, also such
- * that are shorter than a half. The mesh has passed sm_mesh_prepare(), and is no longer needed
- * afterwards; `name` is for messages. Two factorisations of [vertices], for a sphere one of [2 *
- * vertices]. The caller frees. Errors: triangulation.h's and solver.h's; SM_INPUT, a surface of
- * another genus or of more rims. */
+/* Maps the surface. Pieces of up to 1% of the triangles are dropped, and rims that are shorter than
+ * a tenth of the root of the area are closed, each with a vertex in its middle; where there are
+ * more rims than a map may have, also such that are shorter than a half. The mesh has passed
+ * sm_mesh_prepare(), and is no longer needed afterwards; `name` is for messages. Two factorisations
+ * of [vertices], for a sphere one of [vertices] and one of [2 * vertices]. The caller frees.
+ * Errors: triangulation.h's and solver.h's; SM_INPUT, a surface of another genus or of more rims.
+ */
 SmCode ref_surface_map_create(const SmMesh *mesh, const char *name, RefSurfaceMap *map,
                               SmError *error);
 

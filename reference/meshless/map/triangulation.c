@@ -46,30 +46,68 @@ static SmEdge *sorted_edges(long vertices, long triangles, const int (*triangle)
     return edge;
 }
 
-/* Glues corners whose edges are the same; an edge of more than two triangles is an error. */
-static SmCode glue(const SmMesh *mesh, const char *name, RefTriangulation *surface, SmError *error)
+/* Links two corners' edges. */
+static void join(RefTriangulation *surface, int corner, int twin)
+{
+    surface->twin[corner] = twin;
+    if (twin >= 0) surface->twin[twin] = corner;
+}
+
+/* A triangle at an edge that has several: in which direction from it, as an angle about it. */
+typedef struct {
+    double angle;
+    int corner;
+    bool forth;
+} Around;
+
+static int by_angle(const void *a, const void *b)
+{
+    const Around *p = a, *q = b;
+    return (p->angle > q->angle) - (p->angle < q->angle);
+}
+
+/* Glues the triangles around one edge in pairs with the inside between them: what touches there,
+ * parts. One without such a neighbour gets a rim. */
+static void pair_around(const SmMesh *mesh, const SmEdge *edge, long count,
+                        RefTriangulation *surface)
+{
+    Around *around = sm_alloc((size_t)count, sizeof *around);
+    const double *low = mesh->position[edge->low], *high = mesh->position[edge->high];
+    double axis[3][3], way[3];
+    sm_subtract(high, low, axis[2]);
+    for (long n = 0; n < count; n++) {
+        sm_subtract(mesh->position[surface->vertex[ref_corner_last(edge[n].corner)]], low, way);
+        if (n == 0) {
+            sm_cross(axis[2], way, axis[1]);
+            sm_cross(axis[1], axis[2], axis[0]);
+            for (int k = 0; k < 2; k++) sm_normalize(axis[k]);
+        }
+        around[n] = (Around){atan2(sm_dot(way, axis[1]), sm_dot(way, axis[0])), edge[n].corner,
+                             edge[n].forth};
+    }
+    qsort(around, (size_t)count, sizeof *around, by_angle);
+    for (long n = 0; n < count; n++) {
+        const Around *one = around + n, *before = around + (n + count - 1) % count;
+        if (one->forth && !before->forth) join(surface, one->corner, before->corner);
+    }
+    free(around);
+}
+
+/* Glues corners whose edges are the same. */
+static void glue(const SmMesh *mesh, RefTriangulation *surface)
 {
     const int(*triangle)[3] = (const int(*)[3])surface->vertex;
-    long corners = 3 * surface->triangles, most = 2, worst = 0;
+    long corners = 3 * surface->triangles;
     SmEdge *edge = sorted_edges(mesh->vertex_count, surface->triangles, triangle);
     for (long c = 0; c < corners; c++) surface->twin[c] = -1;
     for (long e = 0, end; e < corners; e = end) {
         for (end = e + 1; end < corners && sm_edges_same(edge + e, edge + end);) end++;
-        if (end - e > most) {
-            most = end - e;
-            worst = e;
-        }
-        if (end - e != 2) continue;
-        surface->twin[edge[e].corner] = edge[e + 1].corner;
-        surface->twin[edge[e + 1].corner] = edge[e].corner;
+        if (end - e == 2)
+            join(surface, edge[e].corner, edge[e + 1].corner);
+        else if (end - e > 2)
+            pair_around(mesh, edge + e, end - e, surface);
     }
-    const double *at = mesh->position[edge[worst].low];
     free(edge);
-    if (most == 2) return SM_OK;
-    return sm_fail(error, SM_INPUT,
-                   "%s: %ld triangles meet in one edge at (%g, %g, %g): a shell needs a surface "
-                   "with at most two; take out what hangs there",
-                   name, most, at[0], at[1], at[2]);
 }
 
 /* Turns a triangle round: its corners in the order 0 2 1. */
@@ -240,8 +278,8 @@ SmCode ref_triangulation_create(const SmMesh *mesh, const char *name, double sha
                                   .twin = sm_alloc(corners, sizeof(int)),
                                   .length = sm_alloc(corners, sizeof(double))};
     take_triangles(mesh, surface);
-    SmCode code = glue(mesh, name, surface, error);
-    if (code == SM_OK) code = take_piece(surface, name, share, error);
+    glue(mesh, surface);
+    SmCode code = take_piece(surface, name, share, error);
     if (code != SM_OK) {
         ref_triangulation_free(surface);
         return code;
@@ -279,13 +317,6 @@ static long measure_rim(const RefTriangulation *surface, int first, double *leng
     }
     for (int d = 0; d < 3; d++) middle[d] /= (double)edges;
     return edges;
-}
-
-/* Links two corners' edges. */
-static void join(RefTriangulation *surface, int corner, int twin)
-{
-    surface->twin[corner] = twin;
-    if (twin >= 0) surface->twin[twin] = corner;
 }
 
 /* Makes room for more triangles and vertices. */

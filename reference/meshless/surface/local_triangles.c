@@ -287,6 +287,7 @@ static int by_points(const void *a, const void *b)
 static void count_votes(Work *work)
 {
     long kept = 0;
+    if (work->claims == 0) return;
     qsort(work->claim, (size_t)work->claims, sizeof *work->claim, by_points);
     for (long n = 0; n < work->claims; n++)
         if (kept > 0 && by_points(work->claim + kept - 1, work->claim + n) == 0)
