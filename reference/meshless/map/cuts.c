@@ -148,7 +148,7 @@ static void search_from(Search *s, int root)
             reach(s, surface->vertex[ref_corner_next(at)], s->distance[v] + surface->length[at],
                   at);
             at = ref_corner_left(surface, at);
-        } while (at != first);
+        } while (at >= 0 && at != first);
     }
 }
 
@@ -175,6 +175,96 @@ static void slit(Search *s, int from, int to, bool *cut)
     search_from(s, from);
     for (int at = s->from[to]; at >= 0; at = s->from[s->surface->vertex[at]])
         cut[at] = cut[s->surface->twin[at]] = !cut[at];
+}
+
+static Search search_new(const RefTriangulation *surface)
+{
+    size_t size = (size_t)surface->vertices;
+    Search s = {.surface = surface,
+                .distance = sm_alloc(size, sizeof(double)),
+                .from = sm_alloc(size, sizeof(int)),
+                .heap = sm_alloc(size, sizeof(int)),
+                .slot = sm_alloc(size, sizeof(int))};
+    forget(&s);
+    return s;
+}
+
+static void search_free(Search *s)
+{
+    sm_free_all(s->distance, s->from, s->heap, s->slot);
+}
+
+/* An edge that closes a loop with the ways from the root to its ends. */
+typedef struct {
+    double length; /* of the loop, without what both ways share */
+    int corner;
+} Loop;
+
+static int longer(const void *a, const void *b)
+{
+    const Loop *p = a, *q = b;
+    return (p->length < q->length) - (p->length > q->length);
+}
+
+/* Walks from an edge's ends towards the root until the ways meet; writes their corners unless
+ * `loop` is NULL, and returns how many they and the edge are. */
+static long walk_loop(const Search *s, int corner, double *length, int *loop)
+{
+    const RefTriangulation *surface = s->surface;
+    int end[2] = {surface->vertex[corner], surface->vertex[ref_corner_next(corner)]};
+    long count = 1;
+    *length = surface->length[corner];
+    if (loop) loop[0] = corner;
+    while (end[0] != end[1]) {
+        bool second = s->from[end[0]] < 0 ||
+                      (s->from[end[1]] >= 0 && s->distance[end[1]] > s->distance[end[0]]);
+        int step = s->from[end[second]];
+        *length += surface->length[step];
+        if (loop) loop[count] = step;
+        count++;
+        end[second] = surface->vertex[step];
+    }
+    return count;
+}
+
+/* Edges that are not in the tree, with the loops that they close, longest first. */
+static long find_loops(const Search *s, Loop *loop)
+{
+    const RefTriangulation *surface = s->surface;
+    long count = 0;
+    for (int c = 0; c < 3 * surface->triangles; c++) {
+        int twin = surface->twin[c], to = surface->vertex[ref_corner_next(c)];
+        if (twin > c || s->from[to] == c) continue;
+        if (twin >= 0 && s->from[surface->vertex[c]] == twin) continue;
+        walk_loop(s, c, &loop[count].length, NULL);
+        loop[count++].corner = c;
+    }
+    qsort(loop, (size_t)count, sizeof *loop, longer);
+    return count;
+}
+
+long ref_cuts_handle(const RefTriangulation *surface, double limit, int *loop)
+{
+    Search s = search_new(surface);
+    Loop *all = sm_alloc(3 * (size_t)surface->triangles, sizeof *all), best = {INFINITY, -1};
+    search_from(&s, 0);
+    long count = find_loops(&s, all), found = 0;
+    SmPieces pieces; /* of triangles, and of rims as such, joined across edges */
+    sm_pieces_init(surface->triangles + surface->rims, &pieces);
+    for (long n = 0; n < count; n++) {
+        int c = all[n].corner, twin = surface->twin[c];
+        long other = twin < 0 ? surface->triangles + surface->rim[c] : twin / 3;
+        if (sm_pieces_first(&pieces, c / 3) == sm_pieces_first(&pieces, other)) best = all[n];
+        sm_pieces_link(&pieces, c / 3, other);
+    }
+    if (best.length <= limit * sqrt(ref_triangulation_area(surface)))
+        found = walk_loop(&s, best.corner, &best.length, loop);
+    for (long n = 0; n < found; n++) /* a line along a rim cannot be cut */
+        if (surface->twin[loop[n]] < 0) found = 0;
+    sm_pieces_free(&pieces);
+    search_free(&s);
+    free(all);
+    return found;
 }
 
 enum { CANDIDATES = 20 };
@@ -251,14 +341,9 @@ static SmCode choose_tips(const RefTriangulation *surface, const double *weight,
 SmCode ref_cuts_slits(const RefTriangulation *surface, const double *weight, bool *cut, int *tip,
                       SmError *error)
 {
-    size_t size = (size_t)surface->vertices;
-    Search s = {.surface = surface,
-                .distance = sm_alloc(size, sizeof(double)),
-                .from = sm_alloc(size, sizeof(int)),
-                .heap = sm_alloc(size, sizeof(int)),
-                .slot = sm_alloc(size, sizeof(int))};
-    int candidate[CANDIDATES], count = size < CANDIDATES ? (int)size : CANDIDATES, tips[4];
-    forget(&s);
+    Search s = search_new(surface);
+    int candidate[CANDIDATES], tips[4], count = CANDIDATES;
+    if (surface->vertices < CANDIDATES) count = (int)surface->vertices;
     search_from(&s, 0);
     candidate[0] = farthest(&s);
     forget(&s);
@@ -272,6 +357,6 @@ SmCode ref_cuts_slits(const RefTriangulation *surface, const double *weight, boo
         slit(&s, tips[2], tips[3], cut);
         *tip = surface->corner[tips[0]];
     }
-    sm_free_all(s.distance, s.from, s.heap, s.slot);
+    search_free(&s);
     return code;
 }

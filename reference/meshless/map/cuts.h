@@ -9,6 +9,12 @@
  * such places, those that are farthest along the rim from the others. O(rim). */
 void ref_cuts_corners(const RefTriangulation *surface, int corner[4]);
 
+/* A short closed line of edges around a handle or a tunnel, which does not part the surface: the
+ * shortest of 2 genus independent ones, of which each goes along shortest ways from one vertex
+ * (Erickson and Whittlesey 2005). Writes the corners into `loop`, [vertices]; returns how many, or
+ * 0 where it would be longer than `limit` times the root of the area. O(n log n). */
+long ref_cuts_handle(const RefTriangulation *surface, double limit, int *loop);
+
 /* Marks two slits of a closed surface of genus 0: shortest ways along edges between four vertices,
  * about each of which the plane gets half a turn. They are those four of a few, far from one
  * another, that let log L vary least over the surface's area, as the conformal factor of a flat

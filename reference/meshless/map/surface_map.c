@@ -12,7 +12,8 @@
 #include "harmonic.h"
 #include "locate.h"
 
-/* Rims that are shorter, in roots of the area, are closed; the second where there are too many. */
+/* Rims that are shorter, in roots of the area, are closed; the second where there are too many of
+ * them, or of handles. */
 static const double hole = 0.1, largest_hole = 0.5;
 
 /* What the chart's functions know. */
@@ -564,6 +565,22 @@ static SmCode map_any(const char *name, RefSurfaceMap *map, SmError *error)
     return code;
 }
 
+/* Cuts handles that are too many for a map, as long as they are slender or their tunnels narrow;
+ * returns how many. */
+static int cut_handles(RefTriangulation *surface)
+{
+    int cut = 0;
+    while (surface->genus > (surface->rims == 0 ? 1 : 0)) {
+        int *loop = sm_alloc((size_t)surface->vertices, sizeof *loop);
+        long count = ref_cuts_handle(surface, largest_hole, loop);
+        if (count) ref_triangulation_cut(surface, count, loop);
+        free(loop);
+        if (count == 0) break;
+        cut++;
+    }
+    return cut;
+}
+
 /* Maps what a mesh has; `share` and `edges` say what is dropped and closed. */
 static SmCode map_mesh(const SmMesh *mesh, const char *name, double share, long edges,
                        RefSurfaceMap *map, SmError *error)
@@ -575,6 +592,7 @@ static SmCode map_mesh(const SmMesh *mesh, const char *name, double share, long 
     if (code == SM_OK) {
         map->dropped = mesh->triangle_count - surface->triangles;
         map->closed = ref_triangulation_close(surface, hole, edges);
+        map->handles = cut_handles(surface);
         if (surface->rims > (surface->genus == 0 ? 2 : 0))
             map->closed += ref_triangulation_close(surface, largest_hole, edges);
         map->turned = ref_triangulation_delaunay(surface);

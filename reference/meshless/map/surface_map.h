@@ -30,6 +30,7 @@ typedef struct {
     double angle_median, angle_95;
     double factor_low, factor_high; /* what L is below on 5% and 95% of the area */
     long dropped;          /* the mesh's triangles that are doubled, or of small other pieces */
+    int handles;           /* that were cut */
     int closed;            /* short rims, taken for holes of a scan and closed */
     long triangles, flips; /* flips: triangles that are turned over in the plane */
     long turned, clamped;  /* edges that were turned, and weights set to the least */

@@ -358,6 +358,15 @@ static void fill_rim(RefTriangulation *surface, int first, const double middle[3
     for (long c = from; c < corners; c += 3) surface->twin[surface->twin[c]] = (int)c;
 }
 
+/* Closes a rim; the edges of one of two become one. */
+static void close_rim(RefTriangulation *surface, int first, long edges, const double middle[3])
+{
+    if (edges == 2)
+        join(surface, first, ref_rim_next(surface, first));
+    else
+        fill_rim(surface, first, middle, edges);
+}
+
 int ref_triangulation_close(RefTriangulation *surface, double limit, long most)
 {
     double longest = limit * sqrt(ref_triangulation_area(surface)), length, middle[3];
@@ -368,12 +377,37 @@ int ref_triangulation_close(RefTriangulation *surface, double limit, long most)
         while (first < corners && surface->rim[first] != rim) first++;
         long edges = measure_rim(surface, first, &length, middle);
         if (length > longest && edges > most) continue;
-        fill_rim(surface, first, middle, edges);
+        close_rim(surface, first, edges, middle);
         closed++;
     }
     free(surface->rim);
     count_rims(surface);
     return closed;
+}
+
+void ref_triangulation_cut(RefTriangulation *surface, long count, const int *loop)
+{
+    int end[2] = {loop[0], surface->twin[loop[0]]}, *source = surface->source;
+    double(*position)[3] = surface->position;
+    for (long n = 0; n < count; n++) {
+        surface->twin[surface->twin[loop[n]]] = -1;
+        surface->twin[loop[n]] = -1;
+    }
+    sm_free_all(surface->corner, surface->rim);
+    number_fans(surface);
+    surface->position = sm_alloc((size_t)surface->vertices, sizeof *position);
+    for (long v = 0; v < surface->vertices; v++) {
+        int before = surface->source[v];
+        memcpy(surface->position[v], position[before], sizeof *position);
+        surface->source[v] = source[before];
+    }
+    for (int k = 0; k < 2; k++) {
+        double length, middle[3];
+        long edges = measure_rim(surface, end[k], &length, middle);
+        close_rim(surface, end[k], edges, middle);
+    }
+    count_rims(surface);
+    sm_free_all(source, position);
 }
 
 /* The cotangent at a corner. */

@@ -65,6 +65,10 @@ void ref_triangulation_free(RefTriangulation *surface);
  * so many edges, with triangles around the middle of each; returns how many. */
 int ref_triangulation_close(RefTriangulation *surface, double limit, long edges);
 
+/* Cuts along a closed line of inner edges, given by `count` corners, and closes both sides as
+ * above: a handle less, where the line does not part the surface. */
+void ref_triangulation_cut(RefTriangulation *surface, long count, const int *loop);
+
 double ref_triangulation_area(const RefTriangulation *surface);
 
 /* Turns edges until the two angles across each add up to half a turn at most: the Delaunay
