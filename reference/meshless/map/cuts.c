@@ -6,6 +6,8 @@
 
 #include "harmonic.h"
 
+enum { CANDIDATES = 20 };
+
 /* The way along the rim between two of its places. */
 static double apart(double whole, double a, double b)
 {
@@ -160,11 +162,15 @@ static void forget(Search *s)
     }
 }
 
+/* The vertex that is farthest of those that are not on a rim, or -1. */
 static int farthest(const Search *s)
 {
-    int best = 0;
-    for (int v = 1; v < s->surface->vertices; v++)
-        if (s->distance[v] > s->distance[best]) best = v;
+    const RefTriangulation *surface = s->surface;
+    int best = -1;
+    for (int v = 0; v < surface->vertices; v++)
+        if (surface->rim[surface->corner[v]] < 0 && s->distance[v] > 0 &&
+            (best < 0 || s->distance[v] > s->distance[best]))
+            best = v;
     return best;
 }
 
@@ -173,8 +179,10 @@ static void slit(Search *s, int from, int to, bool *cut)
 {
     forget(s);
     search_from(s, from);
-    for (int at = s->from[to]; at >= 0; at = s->from[s->surface->vertex[at]])
-        cut[at] = cut[s->surface->twin[at]] = !cut[at];
+    for (int at = s->from[to]; at >= 0; at = s->from[s->surface->vertex[at]]) {
+        int twin = s->surface->twin[at];
+        if (twin >= 0) cut[at] = cut[twin] = !cut[at];
+    }
 }
 
 static Search search_new(const RefTriangulation *surface)
@@ -267,13 +275,13 @@ long ref_cuts_handle(const RefTriangulation *surface, double limit, int *loop)
     return found;
 }
 
-enum { CANDIDATES = 20 };
-
-/* 2 pi less the angles at every vertex, and the vertices' shares of the area. */
+/* What the angles at every vertex lack to 2 pi, on a rim to pi, and the vertices' shares of the
+ * area. */
 static void bend(const RefTriangulation *surface, double *curvature, double *share)
 {
     double whole = ref_triangulation_area(surface), cotangent[3];
-    for (long v = 0; v < surface->vertices; v++) curvature[v] = 2 * M_PI;
+    for (long v = 0; v < surface->vertices; v++)
+        curvature[v] = surface->rim[surface->corner[v]] < 0 ? 2 * M_PI : M_PI;
     for (long t = 0; t < surface->triangles; t++) {
         double area = ref_triangle_shape(surface->length + 3 * t, cotangent) / 2;
         for (int i = 0; i < 3; i++) {
@@ -291,49 +299,70 @@ static void centre(long count, const double *share, double *u)
     for (long v = 0; v < count; v++) u[v] -= mean;
 }
 
-/* The four of `count` functions whose sum is nearest to the last one, the function `count`. */
-static void choose_four(int count, double product[CANDIDATES + 1][CANDIDATES + 1], int best[4])
+/* The mean squares and products of functions: those of candidates, and behind them that of the
+ * curvature and, for a disk, that of four corners. */
+enum { MOST_FUNCTIONS = CANDIDATES + 2 };
+typedef double Products[MOST_FUNCTIONS][MOST_FUNCTIONS];
+
+/* The variance of log L with these branch points, the curvature's function being number `count`. */
+static double variance(const Products product, int count, int wanted, const int *pick)
 {
-    double least = INFINITY;
-    int pick[4];
-    for (pick[0] = 0; pick[0] < count; pick[0]++)
-        for (pick[1] = 0; pick[1] < pick[0]; pick[1]++)
-            for (pick[2] = 0; pick[2] < pick[1]; pick[2]++)
-                for (pick[3] = 0; pick[3] < pick[2]; pick[3]++) {
-                    double sum = 0;
-                    for (int i = 0; i < 4; i++) {
-                        sum -= 2 * product[pick[i]][count];
-                        for (int j = 0; j < 4; j++) sum += product[pick[i]][pick[j]];
-                    }
-                    if (!(sum < least)) continue;
-                    least = sum;
-                    memcpy(best, pick, sizeof pick);
-                }
+    double sum = product[count][count];
+    for (int i = 0; i < wanted; i++) {
+        sum -= 2 * product[pick[i]][count];
+        for (int j = 0; j < wanted; j++) sum += product[pick[i]][pick[j]];
+    }
+    return sum;
 }
 
-/* Of the candidates, the four that let log L vary least. */
-static SmCode choose_tips(const RefTriangulation *surface, const double *weight, int count,
-                          const int *candidate, int tip[4], SmError *error)
+/* Tries all choices of `wanted` candidates behind the first `from`. */
+static void choose_from(const Products product, int count, int wanted, int level, int *pick,
+                        double *least, int *best)
 {
-    double *u[CANDIDATES + 1], product[CANDIDATES + 1][CANDIDATES + 1] = {{0}};
+    if (level == wanted) {
+        double found = variance(product, count, wanted, pick);
+        if (!(found < *least)) return;
+        *least = found;
+        memcpy(best, pick, (size_t)wanted * sizeof *pick);
+        return;
+    }
+    for (pick[level] = level ? pick[level - 1] + 1 : 0; pick[level] < count; pick[level]++)
+        choose_from(product, count, wanted, level + 1, pick, least, best);
+}
+
+/* Of the candidates, the `wanted` ones that let log L vary least; for a disk, none where four
+ * corners let it vary as little or nearly so. */
+static SmCode choose_tips(const RefTriangulation *surface, const double *weight, int count,
+                          const int *candidate, int wanted, int tip[4], bool *found, SmError *error)
+{
+    int corner[4], pick[5], best[4] = {0}, functions = count + 1 + (wanted == 2);
+    double *u[MOST_FUNCTIONS], least = INFINITY;
+    Products product = {{0}};
     double *share = sm_alloc((size_t)surface->vertices, sizeof *share);
-    int best[4] = {0};
-    for (int k = 0; k <= count; k++) u[k] = sm_alloc((size_t)surface->vertices, sizeof **u);
+    for (int k = 0; k < functions; k++) u[k] = sm_alloc((size_t)surface->vertices, sizeof **u);
     for (int k = 0; k < count; k++) u[k][candidate[k]] = M_PI;
     bend(surface, u[count], share);
-    SmCode code = ref_harmonic_potentials(surface, weight, count + 1, u, u, error);
-    if (code == SM_OK) {
-        for (int k = 0; k <= count; k++) centre(surface->vertices, share, u[k]);
-        for (int i = 0; i <= count; i++)
-            for (int j = 0; j <= i; j++) {
-                for (long v = 0; v < surface->vertices; v++)
-                    product[i][j] += share[v] * u[i][v] * u[j][v];
-                product[j][i] = product[i][j];
-            }
-        choose_four(count, product, best);
-        for (int k = 0; k < 4; k++) tip[k] = candidate[best[k]];
+    if (wanted == 2) {
+        ref_cuts_corners(surface, corner);
+        for (int k = 0; k < 4; k++) u[count + 1][surface->vertex[corner[k]]] = M_PI / 2;
     }
-    for (int k = 0; k <= count; k++) free(u[k]);
+    SmCode code = ref_harmonic_potentials(surface, weight, functions, u, u, error);
+    for (int k = 0; k < functions && code == SM_OK; k++) centre(surface->vertices, share, u[k]);
+    for (int i = 0; i < functions && code == SM_OK; i++)
+        for (int j = 0; j <= i; j++) {
+            for (long v = 0; v < surface->vertices; v++)
+                product[i][j] += share[v] * u[i][v] * u[j][v];
+            product[j][i] = product[i][j];
+        }
+    choose_from((const double(*)[MOST_FUNCTIONS])product, count, wanted, 0, pick, &least, best);
+    for (int k = 0; k < wanted; k++) tip[k] = candidate[best[k]];
+    *found = least < INFINITY;
+    if (wanted == 2) { /* the corners are simpler: unless they are clearly worse */
+        pick[0] = count + 1;
+        *found = *found &&
+                 least < 0.5 * variance((const double(*)[MOST_FUNCTIONS])product, count, 1, pick);
+    }
+    for (int k = 0; k < functions; k++) free(u[k]);
     free(share);
     return code;
 }
@@ -342,19 +371,22 @@ SmCode ref_cuts_slits(const RefTriangulation *surface, const double *weight, boo
                       SmError *error)
 {
     Search s = search_new(surface);
-    int candidate[CANDIDATES], tips[4], count = CANDIDATES;
-    if (surface->vertices < CANDIDATES) count = (int)surface->vertices;
+    int candidate[CANDIDATES], tips[4], count = 0, wanted = surface->rims ? 2 : 4;
+    bool found = false;
     search_from(&s, 0);
-    candidate[0] = farthest(&s);
+    int next = farthest(&s);
     forget(&s);
-    for (int k = 1; k < count; k++) {
-        search_from(&s, candidate[k - 1]);
-        candidate[k] = farthest(&s);
+    for (; next >= 0 && count < CANDIDATES; count++) {
+        candidate[count] = next;
+        search_from(&s, next);
+        next = farthest(&s);
     }
-    SmCode code = choose_tips(surface, weight, count, candidate, tips, error);
-    if (code == SM_OK) {
-        slit(&s, tips[0], tips[1], cut);
-        slit(&s, tips[2], tips[3], cut);
+    SmCode code = count < wanted
+                      ? SM_OK
+                      : choose_tips(surface, weight, count, candidate, wanted, tips, &found, error);
+    *tip = -1;
+    if (code == SM_OK && found) {
+        for (int k = 0; k < wanted; k += 2) slit(&s, tips[k], tips[k + 1], cut);
         *tip = surface->corner[tips[0]];
     }
     search_free(&s);

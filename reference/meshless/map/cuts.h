@@ -15,12 +15,13 @@ void ref_cuts_corners(const RefTriangulation *surface, int corner[4]);
  * 0 where it would be longer than `limit` times the root of the area. O(n log n). */
 long ref_cuts_handle(const RefTriangulation *surface, double limit, int *loop);
 
-/* Marks two slits of a closed surface of genus 0: shortest ways along edges between four vertices,
- * about each of which the plane gets half a turn. They are those four of a few, far from one
- * another, that let log L vary least over the surface's area, as the conformal factor of a flat
- * metric with so much of a turn there says: sum_j w_ij (u_i - u_j) = target_i - curvature_i for u =
- * -log L (Springborn, Schroeder and Pinkall 2008, section 3; Ben-Chen, Gotsman and Bunin 2008).
- * `tip` becomes a corner of one of them. `cut` is [3 * triangles] and zero. One factorisation of
+/* Marks two slits of a closed surface of genus 0, or one of a disk: each a shortest way along edges
+ * between two vertices, about which the plane gets half a turn. They are those of a few, far from
+ * one another, that let log L vary least over the surface's area, as the conformal factor of a flat
+ * metric says that has so much of a turn there and nowhere else: sum_j w_ij (u_i - u_j) = target_i
+ * - curvature_i for u = -log L (Ben-Chen, Gotsman and Bunin 2008). `tip` becomes a corner of one of
+ * them, or -1 where a disk has no slit because the four corners of its rim do as well: where they
+ * give less than twice the variance. `cut` is [3 * triangles] and zero. One factorisation of
  * [vertices]. Errors: solver.h's. */
 SmCode ref_cuts_slits(const RefTriangulation *surface, const double *weight, bool *cut, int *tip,
                       SmError *error);

@@ -30,13 +30,13 @@ typedef struct {
     RefMapKind kind;
     double *step[2], *at[2]; /* [corners], [vertices] of the surface, or of it taken twice */
     double side[2];          /* of the rectangle */
-    double shift;            /* from a torus' upper side to its lower one */
+    double shift;            /* of what is beyond the upper side */
     const RefTriangulation *surface; /* that `at` is of */
 } Plane;
 
 const char *ref_map_kind_name(RefMapKind kind)
 {
-    static const char *const name[] = {"disk", "annulus", "torus", "sphere"};
+    static const char *const name[] = {"disk", "cap", "annulus", "torus", "sphere"};
     return name[kind];
 }
 
@@ -55,18 +55,18 @@ void ref_surface_map_free(RefSurfaceMap *map)
  * a turn. */
 static bool reduce(const Plane *plane, double theta[2])
 {
-    double height = plane->kind == REF_MAP_SPHERE ? 2 * plane->side[1] : plane->side[1];
-    bool turned = false;
+    bool folded = plane->kind == REF_MAP_SPHERE || plane->kind == REF_MAP_CAP;
+    double height = folded ? 2 * plane->side[1] : plane->side[1];
     if (plane->kind == REF_MAP_DISK) return false;
-    if (plane->kind != REF_MAP_ANNULUS) {
+    if (plane->kind == REF_MAP_TORUS || plane->kind == REF_MAP_SPHERE) {
         double rows = floor(theta[1] / height);
         theta[0] -= rows * plane->shift;
         theta[1] -= rows * height;
-        turned = plane->kind == REF_MAP_SPHERE && theta[1] > plane->side[1];
-        if (turned) {
-            theta[0] = plane->shift - theta[0];
-            theta[1] = height - theta[1];
-        }
+    }
+    bool turned = folded && theta[1] > plane->side[1];
+    if (turned) {
+        theta[0] = plane->shift - theta[0];
+        theta[1] = height - theta[1];
     }
     theta[0] -= plane->side[0] * floor(theta[0] / plane->side[0]);
     return turned;
@@ -205,14 +205,18 @@ static SmCode map_torus(const RefTriangulation *surface, const double *weight, d
     return SM_OK;
 }
 
-/* The half of the torus of a sphere that is taken twice, with a branch point at the origin. */
-static SmCode map_sphere(const RefTriangulation *twice, double area, int root, Plane *plane,
-                         SmError *error)
+/* Half of the torus or the annulus of a sphere or a disk that is taken twice, with a branch point
+ * at the origin or on the upper side. */
+static SmCode map_half(const RefTriangulation *twice, double area, int tip, Plane *plane,
+                       SmError *error)
 {
     long clamped;
     double *weight = ref_harmonic_weights(twice, &clamped);
-    SmCode code = map_torus(twice, weight, 2 * area, root, plane, error);
+    SmCode code = plane->kind == REF_MAP_SPHERE
+                      ? map_torus(twice, weight, 2 * area, tip, plane, error)
+                      : map_annulus(twice, weight, plane, error);
     plane->side[1] /= 2;
+    if (code == SM_OK && plane->kind == REF_MAP_CAP) plane->shift = 2 * plane->at[0][tip];
     free(weight);
     return code;
 }
@@ -359,7 +363,9 @@ static void make_chart(const Plane *plane, RefSurfaceMap *map)
                         .data = map->surface};
     if (plane->kind == REF_MAP_ANNULUS) ref_chart_wrap(chart, true, false);
     if (plane->kind == REF_MAP_TORUS) ref_chart_skew(chart, plane->shift);
-    if (plane->kind == REF_MAP_SPHERE) ref_chart_fold(chart, 0, plane->shift / 2);
+    double upper = plane->shift / 2;
+    if (plane->kind == REF_MAP_CAP) ref_chart_fold(chart, NULL, &upper);
+    if (plane->kind == REF_MAP_SPHERE) ref_chart_fold(chart, &chart->low[0], &upper);
 }
 
 /* The weights of a triangle's corners at its place that is nearest to x; returns the square of the
@@ -502,17 +508,21 @@ static void finish(const Plane *plane, RefSurfaceMap *map)
     carry(plane, map);
 }
 
-/* The sphere's plane, by the surface taken twice, which is the caller's to free. */
+/* The plane of a sphere or a disk by the surface taken twice, which is the caller's to free; the
+ * disk may turn out to be a cap. */
 static SmCode unfold(const RefTriangulation *surface, const double *weight, RefTriangulation *twice,
                      Plane *plane, SmError *error)
 {
     bool *cut = sm_alloc(3 * (size_t)surface->triangles, sizeof *cut);
     int tip;
     SmCode code = ref_cuts_slits(surface, weight, cut, &tip, error);
-    if (code == SM_OK) {
+    if (code == SM_OK && tip < 0) {
+        code = map_disk(surface, weight, plane, error);
+    } else if (code == SM_OK) {
+        if (plane->kind == REF_MAP_DISK) plane->kind = REF_MAP_CAP;
         *twice = ref_triangulation_twice(surface, cut);
         plane->surface = twice;
-        code = map_sphere(twice, ref_triangulation_area(surface), twice->vertex[tip], plane, error);
+        code = map_half(twice, ref_triangulation_area(surface), twice->vertex[tip], plane, error);
     }
     free(cut);
     return code;
@@ -543,10 +553,11 @@ static SmCode map_any(const char *name, RefSurfaceMap *map, SmError *error)
     RefTriangulation twice = {0};
     double *weight = ref_harmonic_weights(surface, &map->clamped);
     SmCode code = SM_OK;
-    map->kind = plane.kind;
     switch (plane.kind) {
     case REF_MAP_DISK:
-        code = map_disk(surface, weight, &plane, error);
+    case REF_MAP_CAP:
+    case REF_MAP_SPHERE:
+        code = unfold(surface, weight, &twice, &plane, error);
         break;
     case REF_MAP_ANNULUS:
         code = map_annulus(surface, weight, &plane, error);
@@ -554,10 +565,8 @@ static SmCode map_any(const char *name, RefSurfaceMap *map, SmError *error)
     case REF_MAP_TORUS:
         code = map_torus(surface, weight, ref_triangulation_area(surface), 0, &plane, error);
         break;
-    case REF_MAP_SPHERE:
-        code = unfold(surface, weight, &twice, &plane, error);
-        break;
     }
+    map->kind = plane.kind;
     if (code == SM_OK) finish(&plane, map);
     for (int d = 0; d < 2; d++) sm_free_all(plane.step[d], plane.at[d]);
     ref_triangulation_free(&twice);

@@ -3,20 +3,26 @@
  *
  * Every surface here is a flat one, cut open to a rectangle:
  *     a disk has four corners on its rim, and a rim along each side;
- *     an annulus (a tube) closes around the first axis, with rims above and below;
- *     a torus closes around both axes, with a shift;
- *     a sphere is folded as a pillowcase is: taken twice and glued along two cuts it is a torus, of
- *     which it is the half that half a turn leaves (chart.h).
- * Harmonic one-forms of least periods are found on it (harmonic.h); their energies say the
- * rectangle's shape, and their integrals are the parameters. The triangulation's edges are turned
- * to a Delaunay one before, whose weights keep all triangles the right way up. */
+ *     a cap is a disk that bulges: it closes around the first axis, with its rim below, and is
+ * folded above (chart.h); an annulus (a tube) closes around the first axis, with rims above and
+ * below; a torus closes around both axes, with a shift; a sphere is folded as a pillowcase is:
+ * taken twice and glued along two cuts it is a torus, of which it is the half that half a turn
+ * leaves (chart.h). Harmonic one-forms of least periods are found on it (harmonic.h); their
+ * energies say the rectangle's shape, and their integrals are the parameters. The triangulation's
+ * edges are turned to a Delaunay one before, whose weights keep all triangles the right way up. */
 #ifndef REF_SURFACE_MAP_H
 #define REF_SURFACE_MAP_H
 
 #include "../../../lib/mesh/mesh.h"
 #include "../shell/chart.h"
 
-typedef enum { REF_MAP_DISK, REF_MAP_ANNULUS, REF_MAP_TORUS, REF_MAP_SPHERE } RefMapKind;
+typedef enum {
+    REF_MAP_DISK,
+    REF_MAP_CAP,
+    REF_MAP_ANNULUS,
+    REF_MAP_TORUS,
+    REF_MAP_SPHERE
+} RefMapKind;
 
 typedef struct {
     RefMapKind kind;
@@ -41,9 +47,10 @@ typedef struct {
 /* Maps the surface. Pieces of up to 1% of the triangles are dropped, and rims that are shorter than
  * a tenth of the root of the area are closed, each with a vertex in its middle; where there are
  * more rims than a map may have, also such that are shorter than a half. The mesh has passed
- * sm_mesh_prepare(), and is no longer needed afterwards; `name` is for messages. Two factorisations
- * of [vertices], for a sphere one of [vertices] and one of [2 * vertices]. The caller frees.
- * Errors: triangulation.h's and solver.h's; SM_INPUT, a surface of another genus or of more rims.
+ * sm_mesh_prepare(), and is no longer needed afterwards; `name` is for messages. Up to three
+ * factorisations of [vertices], for a cap or a sphere one of them and of [2 * vertices]. The caller
+ * frees. Errors: triangulation.h's and solver.h's; SM_INPUT, a surface of another genus or of more
+ * rims.
  */
 SmCode ref_surface_map_create(const SmMesh *mesh, const char *name, RefSurfaceMap *map,
                               SmError *error);
@@ -62,7 +69,7 @@ void ref_surface_map_feet(const RefSurfaceMap *map, long count, const double (*x
 
 void ref_surface_map_free(RefSurfaceMap *map);
 
-/* disk, annulus, torus or sphere. */
+/* disk, cap, annulus, torus or sphere. */
 const char *ref_map_kind_name(RefMapKind kind);
 
 #endif

@@ -612,7 +612,7 @@ RefTriangulation ref_triangulation_twice(const RefTriangulation *surface, const 
         int one = c % corners, sheet = c / corners;
         if (cut[one]) sheet = !sheet;
         twice.vertex[c] = surface->vertex[one];
-        twice.twin[c] = surface->twin[one] + sheet * corners;
+        twice.twin[c] = surface->twin[one] < 0 ? -1 : surface->twin[one] + sheet * corners;
         twice.length[c] = surface->length[one];
     }
     number_fans(&twice);

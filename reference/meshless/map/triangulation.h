@@ -81,7 +81,7 @@ long ref_triangulation_delaunay(RefTriangulation *surface);
  * straight rim; returns how many. */
 long ref_triangulation_split(RefTriangulation *surface);
 
-/* The surface taken twice, a closed one cut open along lines of edges and each sheet glued to the
+/* The surface taken twice, cut open along lines of edges and each sheet glued to the
  * other there: `cut` is true for both corners of such edges, [3 * triangles]. Corner c is c of the
  * first sheet and 3 * triangles + c of the second. The caller frees. */
 RefTriangulation ref_triangulation_twice(const RefTriangulation *surface, const bool *cut);

@@ -30,17 +30,20 @@ void ref_chart_skew(RefChart *chart, double shift)
         for (int i = -1; i <= 1; i++) add_seam(chart, i * side[0] + j * shift, j * side[1], false);
 }
 
-void ref_chart_fold(RefChart *chart, double lower, double upper)
+/* Of the branch points of a fold, half a side apart, the one that is nearest to the side's middle.
+ */
+static void fold_side(RefChart *chart, double branch, double side)
 {
-    double side = chart->high[0] - chart->low[0], middle = chart->low[0] + side / 2;
-    double centre[2] = {lower, upper};
+    double length = chart->high[0] - chart->low[0], middle = chart->low[0] + length / 2;
+    branch -= length / 2 * rint((branch - middle) / (length / 2));
+    for (int i = -1; i <= 1; i++) add_seam(chart, 2 * branch + i * length, 2 * side, true);
+}
+
+void ref_chart_fold(RefChart *chart, const double *lower, const double *upper)
+{
     ref_chart_wrap(chart, true, false);
-    for (int end = 0; end < 2; end++) { /* the branch point that is nearest to the side's middle */
-        centre[end] -= side / 2 * rint((centre[end] - middle) / (side / 2));
-        for (int i = -1; i <= 1; i++)
-            add_seam(chart, 2 * centre[end] + i * side, 2 * (end ? chart->high : chart->low)[1],
-                     true);
-    }
+    if (lower) fold_side(chart, *lower, chart->low[1]);
+    if (upper) fold_side(chart, *upper, chart->high[1]);
 }
 
 static bool holds(const double low[2], const double high[2], const double theta[2])

@@ -28,15 +28,16 @@ void ref_chart_wrap(RefChart *chart, bool first, bool second);
  * |shift| up to half the side. */
 void ref_chart_skew(RefChart *chart, double shift);
 
-/* Joins the first axis' sides, and folds the lower and the upper side each onto itself by half a
- * turn about the places (lower, low[1]) and (upper, high[1]): a closed surface of genus 0, made as
- * a pillowcase is. Each fold ends at two branch points, half a side apart, about which the surface
+/* Joins the first axis' sides, and folds the lower or the upper side or both, each onto itself by
+ * half a turn about the place (*lower, low[1]) or (*upper, high[1]); NULL: a rim. One fold closes
+ * an end of a tube, which so is a sheet with one rim; two make a closed surface of genus 0, as a
+ * pillowcase is made. Each ends at two branch points, half a side apart, about which the surface
  * has half a turn of the plane. A function that is smooth on the surface is even about them, f(w) =
  * f(-w), and so are all that nodes and their images make: linear terms cancel there, and L falls to
  * 0 as the distance does. Covers may reach around such a point, as no value is there twice unless
  * it is the same; they could not around a point with more than a whole turn. Here and on skewed
  * tori, covers may reach half a side. */
-void ref_chart_fold(RefChart *chart, double lower, double upper);
+void ref_chart_fold(RefChart *chart, const double *lower, const double *upper);
 
 /* Moves a place that is beyond a seam into the rectangle; false where there is no seam. */
 bool ref_chart_enter(const RefChart *chart, double theta[2]);

@@ -60,7 +60,7 @@ static inline RefChart chart_of_kind(unsigned *seed, int kind, int across, doubl
         waves->side[1] *= 2;
         waves->skew = 2 * skew;
         for (int k = 0; k < 3; k++) waves->phase[k] = M_PI / 2;
-        ref_chart_fold(&chart, chart.low[0], chart.low[0] + skew);
+        ref_chart_fold(&chart, waves->low, (double[]){chart.low[0] + skew});
     }
     return chart;
 }

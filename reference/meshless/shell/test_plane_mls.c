@@ -214,7 +214,7 @@ TEST(moving_the_seams_changes_nothing)
         waves.side[1] = (kind == 5 ? 2 : 1) * waves.side[0];
         if (kind == 3) ref_chart_wrap(&chart, true, true);
         if (kind == 4) ref_chart_skew(&chart, waves.skew);
-        if (kind == 5) ref_chart_fold(&chart, chart.low[0], chart.low[0] + waves.skew / 2);
+        if (kind == 5) ref_chart_fold(&chart, waves.low, (double[]){waves.low[0] + waves.skew / 2});
         RefQuadtree tree = quadtree_of(&chart, ACROSS, 500), other;
         moved = chart;
         for (int d = 0; d < (kind == 5 ? 1 : 2); d++) {
@@ -224,7 +224,7 @@ TEST(moving_the_seams_changes_nothing)
         }
         if (kind == 3) ref_chart_wrap(&moved, true, true);
         if (kind == 4) ref_chart_skew(&moved, waves.skew);
-        if (kind == 5) ref_chart_fold(&moved, chart.low[0], chart.low[0] + waves.skew / 2);
+        if (kind == 5) ref_chart_fold(&moved, waves.low, (double[]){waves.low[0] + waves.skew / 2});
         other = quadtree_of(&moved, ACROSS, 500);
         assert_int_equal(tree.leaves, other.leaves);
         RefNodes nodes, others;
