@@ -176,6 +176,23 @@ TEST(a_torus_without_symmetry_has_a_skewed_chart)
     sm_mesh_free(&mesh);
 }
 
+/* The places on the surface of the branch points of a chart's folds; returns how many. */
+static int find_branches(const RefSurfaceMap *map, double branch[4][3])
+{
+    const RefChart *chart = &map->chart;
+    int count = 0;
+    for (int s = 0; s < chart->seams; s++)
+        for (int half = 0; half < 2 && chart->seam[s].turned; half++) {
+            const RefSeam *fold = chart->seam + s;
+            double at[2] = {(fold->shift[0] + half * chart->high[0]) / 2, fold->shift[1] / 2}, x[3];
+            bool known = at[0] < 0 || at[0] >= chart->high[0] * (1 - 1e-9);
+            chart->place(chart->data, at, x);
+            for (int b = 0; b < count; b++) known |= sm_square_between(branch[b], x) < 1e-6;
+            if (!known) memcpy(branch[count++], x, sizeof x);
+        }
+    return count;
+}
+
 /* On a unit sphere L is the root of the product of the distances from the four branch points, times
  * a constant: dz / dw is the root of the product of all z - a. */
 TEST(a_sphere_is_a_pillowcase)
@@ -186,21 +203,7 @@ TEST(a_sphere_is_a_pillowcase)
         SmMesh mesh = sphere_mesh(fine ? 40 : 20, 0.2, &seed);
         RefSurfaceMap map = map_of(&mesh, REF_MAP_SPHERE);
         double *L = sm_alloc((size_t)map.vertices, sizeof *L), branch[4][3];
-        int branches = 0;
-        for (int s = 2; s < map.chart.seams; s++) { /* half turns' middles */
-            const RefSeam *fold = map.chart.seam + s;
-            for (int half = 0; half < 2; half++) {
-                double at[2] = {(fold->shift[0] + half * map.chart.high[0]) / 2,
-                                fold->shift[1] / 2};
-                if (at[0] < 0 || at[0] >= map.chart.high[0] * (1 - 1e-9)) continue;
-                double x[3];
-                map.chart.place(map.chart.data, at, x);
-                bool known = false;
-                for (int b = 0; b < branches; b++) known |= sm_square_between(branch[b], x) < 1e-6;
-                if (!known) memcpy(branch[branches++], x, sizeof x);
-            }
-        }
-        assert_int_equal(branches, 4);
+        assert_int_equal(find_branches(&map, branch), 4);
         for (long v = 0; v < map.vertices; v++) {
             L[v] = 1;
             for (int b = 0; b < 4; b++)
@@ -209,10 +212,196 @@ TEST(a_sphere_is_a_pillowcase)
         }
         assert_true(spread(&map, L) < (fine ? 0.01 : 0.02));
         error[fine] = map.angle_95;
+        check_chart(&mesh, &map);
         check_seams(&map);
         free(L);
         ref_surface_map_free(&map);
         sm_mesh_free(&mesh);
     }
     assert_true(error[0] < 8 && error[1] < 0.6 * error[0]);
+}
+
+/* Most of a sphere: what of the plane is within R of the origin, by stereographic projection, made
+ * of the half by R-fold enlargement there. */
+enum { R = 3 };
+static SmMesh bulb_mesh(int n)
+{
+    SmMesh mesh = ball_mesh(n, true, 0.2, &seed);
+    for (long v = 0; v < mesh.vertex_count; v++) {
+        double *x = mesh.position[v], below = 1 + x[2], square;
+        for (int d = 0; d < 2; d++) x[d] *= R / below;
+        square = x[0] * x[0] + x[1] * x[1];
+        for (int d = 0; d < 2; d++) x[d] *= 2 / (1 + square);
+        x[2] = (1 - square) / (1 + square);
+    }
+    return mesh;
+}
+
+/* The mirror image of a sheet with a circle for its rim makes it a sphere, which has the branch
+ * points a and R^2 / conj a in the plane. */
+TEST(a_bulb_is_a_cap)
+{
+    needs_solver();
+    SmMesh mesh = bulb_mesh(40);
+    RefSurfaceMap map = map_of(&mesh, REF_MAP_CAP);
+    double *L = sm_alloc((size_t)map.vertices, sizeof *L), branch[4][3], at[4][2];
+    assert_int_equal(find_branches(&map, branch), 2);
+    for (int b = 0; b < 2; b++) {
+        double square = 0;
+        for (int d = 0; d < 2; d++) {
+            at[b][d] = branch[b][d] / (1 + branch[b][2]);
+            square += at[b][d] * at[b][d];
+        }
+        for (int d = 0; d < 2; d++) at[b + 2][d] = R * R * at[b][d] / square;
+    }
+    for (long v = 0; v < map.vertices; v++) {
+        const double *x = mesh.position[v];
+        L[v] = 1 + x[2]; /* 2 / (1 + |z|^2) */
+        for (int b = 0; b < 4; b++)
+            L[v] *= sqrt(hypot(x[0] / (1 + x[2]) - at[b][0], x[1] / (1 + x[2]) - at[b][1]));
+        for (int b = 0; b < 2; b++)
+            if (sm_square_between(branch[b], x) < 0.01) L[v] = 0;
+    }
+    assert_true(spread(&map, L) < 0.02);
+    assert_true(map.angle_median < 1 && map.angle_95 < 5);
+    check_chart(&mesh, &map);
+    check_seams(&map);
+    free(L);
+    ref_surface_map_free(&map);
+    sm_mesh_free(&mesh);
+}
+
+/* Two meshes as one. */
+static SmMesh both(const SmMesh *a, const SmMesh *b)
+{
+    SmMesh mesh =
+        sm_mesh_new(a->vertex_count + b->vertex_count, a->triangle_count + b->triangle_count);
+    for (long v = 0; v < mesh.vertex_count; v++)
+        memcpy(mesh.position[v],
+               v < a->vertex_count ? a->position[v] : b->position[v - a->vertex_count],
+               sizeof *mesh.position);
+    for (long t = 0; t < mesh.triangle_count; t++)
+        for (int i = 0; i < 3; i++)
+            mesh.triangle[t][i] = t < a->triangle_count ? a->triangle[t][i]
+                                                        : b->triangle[t - a->triangle_count][i] +
+                                                              (int)a->vertex_count;
+    return mesh;
+}
+
+/* A missing triangle is closed, triangles that are turned round are turned back, a crumb beside is
+ * dropped, and a fin on one edge is parted. */
+TEST(small_faults_are_mended)
+{
+    needs_solver();
+    SmMesh sphere = sphere_mesh(20, 0.2, &seed), crumb = sphere_mesh(1, 0, &seed);
+    for (long v = 0; v < crumb.vertex_count; v++) crumb.position[v][0] += 9;
+    SmMesh mesh = both(&sphere, &crumb);
+    for (long t = 0; t < sphere.triangle_count; t += 3) {
+        int other = mesh.triangle[t][0];
+        mesh.triangle[t][0] = mesh.triangle[t][1];
+        mesh.triangle[t][1] = other;
+    }
+    memcpy(mesh.triangle[7], mesh.triangle[1000],
+           sizeof *mesh.triangle); /* one gone, one doubled */
+    RefSurfaceMap map = map_of(&mesh, REF_MAP_SPHERE);
+    assert_int_equal(map.closed, 1);
+    assert_int_equal(map.dropped, crumb.triangle_count + 1);
+    ref_surface_map_free(&map);
+    sm_mesh_free(&mesh);
+    sm_mesh_free(&crumb);
+    crumb = sm_mesh_new(1, 1);
+    for (int d = 0; d < 3; d++)
+        crumb.position[0][d] = 1.2 * sphere.position[sphere.triangle[5][0]][d];
+    mesh = both(&sphere, &crumb);
+    memcpy(mesh.triangle[mesh.triangle_count - 1],
+           (int[3]){sphere.triangle[5][0], sphere.triangle[5][1], (int)sphere.vertex_count},
+           sizeof *mesh.triangle);
+    map = map_of(&mesh, REF_MAP_SPHERE);
+    assert_int_equal(map.dropped, 1);
+    ref_surface_map_free(&map);
+    sm_mesh_free(&mesh);
+    sm_mesh_free(&crumb);
+    sm_mesh_free(&sphere);
+}
+
+/* A torus with a slender handle across its hole, which is cut: of genus 2 without. */
+TEST(a_slender_handle_is_cut)
+{
+    needs_solver();
+    SmMesh ring = grid_mesh(60, 24, true, true, on_torus, 0, &seed);
+    SmMesh rod = grid_mesh(6, 40, true, false, on_cylinder, 0, &seed), mesh = both(&ring, &rod);
+    long end[2] = {-1, -1};
+    for (long t = 0; t < ring.triangle_count; t++) { /* where the rod's ends are put */
+        const double *x = ring.position[ring.triangle[t][0]];
+        for (int k = 0; k < 2; k++)
+            if (fabs(x[1]) < 0.3 && fabs(x[2]) < 0.3 && (k ? -1 : 1) * x[0] > 0 &&
+                hypot(x[0], x[1]) < RING)
+                end[k] = t;
+    }
+    long first = mesh.triangle_count;
+    mesh.triangle = sm_realloc(mesh.triangle, (size_t)first + 40, sizeof *mesh.triangle);
+    for (int k = 0; k < 2; k++) { /* sew its six vertices to the triangle's three */
+        const int *corner = mesh.triangle[end[k]];
+        int from = (int)ring.vertex_count + (k ? 40 * 6 : 0);
+        for (int n = 0; n < 3; n++) {
+            int v[3] = {corner[k ? n : 2 - n], corner[k ? (n + 1) % 3 : (4 - n) % 3], 0};
+            const int next[3] = {from + 2 * n, from + 2 * n + 1, from + (2 * n + 2) % 6};
+            const int triangle[3][3] = {
+                {next[0], next[1], v[0]}, {next[1], next[2], v[0]}, {next[2], v[1], v[0]}};
+            memcpy(mesh.triangle[mesh.triangle_count], triangle, sizeof triangle);
+            mesh.triangle_count += 3;
+        }
+    }
+    for (int k = 0; k < 2; k++)
+        memcpy(mesh.triangle[end[k]], mesh.triangle[first + 1 - k], sizeof *mesh.triangle);
+    for (long v = ring.vertex_count; v < mesh.vertex_count; v++) { /* along x */
+        double *x = mesh.position[v], along = x[2] - 1;
+        x[2] = 1.5 * x[0];
+        x[1] *= 1.5;
+        x[0] = -1.9 * along;
+    }
+    RefSurfaceMap map = map_of(&mesh, REF_MAP_TORUS);
+    assert_int_equal(map.handles, 1);
+    ref_surface_map_free(&map);
+    sm_mesh_free(&mesh);
+    sm_mesh_free(&ring);
+    sm_mesh_free(&rod);
+}
+
+static void refused(const SmMesh *mesh, const char *why)
+{
+    RefSurfaceMap map;
+    SmError error = {0};
+    assert_int_equal(ref_surface_map_create(mesh, "mesh", &map, &error), SM_INPUT);
+    if (!strstr(error.text, why)) fail_msg("%s", error.text);
+}
+
+TEST(surfaces_without_a_map_are_refused)
+{
+    needs_solver();
+    SmMesh sphere = sphere_mesh(8, 0, &seed),
+           ring = grid_mesh(30, 12, true, true, on_torus, 0, &seed);
+    SmMesh mesh = both(&sphere, &ring);
+    refused(&mesh, "2 surfaces that do not hang together");
+    sm_mesh_free(&mesh);
+    mesh = sm_mesh_copy(&ring); /* a torus with a large rim */
+    mesh.triangle_count -= 40;
+    refused(&mesh, "genus 1 with 1 rim");
+    sm_mesh_free(&mesh);
+    enum { AROUND = 20 };
+    mesh = sm_mesh_new(2 * AROUND, 2 * AROUND); /* a Moebius strip */
+    for (int n = 0; n < 2 * AROUND; n++) {
+        double angle = 2 * M_PI * (n / 2) / AROUND, side = (n % 2 ? 1 : -1) * 0.4;
+        mesh.position[n][0] = cos(angle) * (2 + side * cos(angle / 2));
+        mesh.position[n][1] = sin(angle) * (2 + side * cos(angle / 2));
+        mesh.position[n][2] = side * sin(angle / 2);
+        for (int k = 0; k < 3; k++) {
+            int to = n + k;
+            mesh.triangle[n][k] = to < 2 * AROUND ? to : (to - 2 * AROUND) ^ 1;
+        }
+    }
+    refused(&mesh, "one side only");
+    sm_mesh_free(&mesh);
+    sm_mesh_free(&sphere);
+    sm_mesh_free(&ring);
 }

@@ -36,13 +36,13 @@ static inline SmMesh grid_mesh(int across, int up, bool around, bool both, Place
     return mesh;
 }
 
-/* A unit sphere of 8 n^2 triangles, those of an octahedron split, its vertices moved by up to
- * `noise` edges. */
-static inline SmMesh sphere_mesh(int n, double noise, unsigned *seed)
+/* A unit sphere of 8 n^2 triangles, those of an octahedron split, or its half above z = 0, its
+ * vertices moved by up to `noise` edges but on the rim. */
+static inline SmMesh ball_mesh(int n, bool half, double noise, unsigned *seed)
 {
-    SmMesh mesh = sm_mesh_new(4L * (n + 1) * (n + 2), 8L * n * n);
+    SmMesh mesh = sm_mesh_new((half ? 2L : 4L) * (n + 1) * (n + 2), (half ? 4L : 8L) * n * n);
     long vertex = 0, triangle = 0;
-    for (int face = 0; face < 8; face++) {
+    for (int face = 0; face < (half ? 4 : 8); face++) {
         int sign[3] = {face & 1 ? -1 : 1, face & 2 ? -1 : 1, face & 4 ? -1 : 1};
         bool mirrored = sign[0] * sign[1] * sign[2] < 0;
         for (int i = 0; i <= n; i++)
@@ -60,10 +60,16 @@ static inline SmMesh sphere_mesh(int n, double noise, unsigned *seed)
     sm_mesh_merge(&mesh);
     for (long v = 0; v < mesh.vertex_count; v++) {
         sm_normalize(mesh.position[v]);
+        if (half && mesh.position[v][2] < 1e-9) continue;
         for (int d = 0; d < 3; d++) mesh.position[v][d] += random_between(seed, -noise, noise) / n;
         sm_normalize(mesh.position[v]);
     }
     return mesh;
+}
+
+static inline SmMesh sphere_mesh(int n, double noise, unsigned *seed)
+{
+    return ball_mesh(n, false, noise, seed);
 }
 
 static inline void random_move(unsigned *seed, SmMesh *mesh)
