@@ -251,6 +251,17 @@ static long find_loops(const Search *s, Loop *loop)
     return count;
 }
 
+/* Whether a loop meets a rim, where it cannot be cut. */
+static bool meets_rim(const RefTriangulation *surface, long count, const int *loop)
+{
+    for (long n = 0; n < count; n++)
+        for (int k = 0; k < 2; k++) {
+            int corner = k ? ref_corner_next(loop[n]) : loop[n];
+            if (surface->rim[surface->corner[surface->vertex[corner]]] >= 0) return true;
+        }
+    return false;
+}
+
 long ref_cuts_handle(const RefTriangulation *surface, double limit, int *loop)
 {
     Search s = search_new(surface);
@@ -262,13 +273,13 @@ long ref_cuts_handle(const RefTriangulation *surface, double limit, int *loop)
     for (long n = 0; n < count; n++) {
         int c = all[n].corner, twin = surface->twin[c];
         long other = twin < 0 ? surface->triangles + surface->rim[c] : twin / 3;
-        if (sm_pieces_first(&pieces, c / 3) == sm_pieces_first(&pieces, other)) best = all[n];
+        bool independent = sm_pieces_first(&pieces, c / 3) == sm_pieces_first(&pieces, other) &&
+                           !meets_rim(surface, walk_loop(&s, c, &all[n].length, loop), loop);
+        if (independent) best = all[n];
         sm_pieces_link(&pieces, c / 3, other);
     }
     if (best.length <= limit * sqrt(ref_triangulation_area(surface)))
         found = walk_loop(&s, best.corner, &best.length, loop);
-    for (long n = 0; n < found; n++) /* a line along a rim cannot be cut */
-        if (surface->twin[loop[n]] < 0) found = 0;
     sm_pieces_free(&pieces);
     search_free(&s);
     free(all);
