@@ -609,6 +609,11 @@ static SmCode map_mesh(const SmMesh *mesh, const char *name, double share, long 
         map->triangles = surface->triangles;
         code = map_any(name, map, error);
     }
+    if (code == SM_OK && 100 * map->flips > map->triangles)
+        code = sm_fail(error, SM_INPUT,
+                       "%s: %ld of %ld triangles collapse in the plane: parts of the surface stick "
+                       "out too far; cut them off",
+                       name, map->flips, map->triangles);
     if (code == SM_OK) carry_others((const double(*)[3])mesh->position, map);
     if (code != SM_OK) ref_surface_map_free(map);
     return code;

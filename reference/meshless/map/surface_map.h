@@ -38,7 +38,7 @@ typedef struct {
     long dropped;          /* the mesh's triangles that are doubled, or of small other pieces */
     int handles;           /* that were cut */
     int closed;            /* short rims, taken for holes of a scan and closed */
-    long triangles, flips; /* flips: triangles that are turned over in the plane */
+    long triangles, flips; /* flips: turned over in the plane, or collapsed */
     long turned, clamped;  /* edges that were turned, and weights set to the least */
     double seconds;
     struct RefMapSurface *surface; /* private */

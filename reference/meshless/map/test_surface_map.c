@@ -1,6 +1,7 @@
 /* Maps of surfaces whose conformal parameters are known. */
 #include "surface_map.h"
 
+#include "../../../lib/mesh/import.h"
 #include "../test_solver.h"
 #include "test_surfaces.h"
 
@@ -46,6 +47,7 @@ static void check_chart(const SmMesh *mesh, const RefSurfaceMap *map)
 static void check_seams(const RefSurfaceMap *map)
 {
     const RefChart *chart = &map->chart;
+    double size = sqrt(chart->high[0] * chart->high[1]);
     for (int n = 0; n < 200; n++)
         for (int d = 0; d < 2; d++) {
             double theta[2], x[3], y[3], tiny = 1e-9 * (chart->high[d] - chart->low[d]);
@@ -56,7 +58,8 @@ static void check_seams(const RefSurfaceMap *map)
             theta[d] += high ? tiny : -tiny;
             if (!ref_chart_enter(chart, theta)) continue;
             chart->place(chart->data, theta, y);
-            assert_true(sqrt(sm_square_between(x, y)) < 1e-6);
+            double near = 1e-7 * size + 10 * tiny * chart->factor(chart->data, theta);
+            assert_true(sqrt(sm_square_between(x, y)) < near);
         }
 }
 
@@ -404,4 +407,40 @@ TEST(surfaces_without_a_map_are_refused)
     sm_mesh_free(&mesh);
     sm_mesh_free(&sphere);
     sm_mesh_free(&ring);
+}
+
+/* Real ones, of every kind and with faults. */
+TEST(real_meshes_have_maps)
+{
+    static const struct {
+        const char *file;
+        RefMapKind kind;
+        double median, most; /* degrees */
+    } wanted[] = {{"bunny_duplicates.ply", REF_MAP_SPHERE, 2, 12},
+                  {"hand_closed.obj", REF_MAP_SPHERE, 2, 8},
+                  {"hand_lowres_open.obj", REF_MAP_CAP, 8, 30},
+                  {"demosthenes_lowres.obj", REF_MAP_CAP, 1.5, 8},
+                  {"cloth_50x50.obj", REF_MAP_DISK, 0.01, 0.05},
+                  {"torus.obj", REF_MAP_TORUS, 1, 3},
+                  {"bad_hourglass_one_hole.stl", REF_MAP_SPHERE, 4, 15},
+                  {"bad_self_intersecting_tube.obj", REF_MAP_SPHERE, 0.5, 6},
+                  {"liver_ct_downsample.stl", REF_MAP_TORUS, 7, 30}};
+    const char *folder = getenv("SHAPEBENCH_MESHES");
+    needs_solver();
+    needs(folder, "SHAPEBENCH_MESHES names no folder of meshes");
+    for (size_t n = 0; n < sizeof wanted / sizeof *wanted; n++) {
+        char path[512];
+        SmMesh mesh;
+        SmError error = {0};
+        snprintf(path, sizeof path, "%s/%s", folder, wanted[n].file);
+        if (sm_import(path, NULL, &mesh, &error) != SM_OK ||
+            sm_mesh_prepare(&mesh, path, &error) != SM_OK)
+            fail_msg("%s", error.text);
+        RefSurfaceMap map = map_of(&mesh, wanted[n].kind);
+        if (map.angle_median > wanted[n].median || map.angle_95 > wanted[n].most)
+            fail_msg("%s: %g and %g degrees", path, map.angle_median, map.angle_95);
+        check_seams(&map);
+        ref_surface_map_free(&map);
+        sm_mesh_free(&mesh);
+    }
 }
