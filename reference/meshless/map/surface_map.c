@@ -547,9 +547,9 @@ static SmCode map_any(const char *name, RefSurfaceMap *map, SmError *error)
     Plane plane = {.surface = surface};
     if (!has_map(surface, &plane.kind))
         return sm_fail(error, SM_INPUT,
-                       "%s: a surface of genus %d with %d rims: a shell can be a sheet with one "
+                       "%s: a surface of genus %d with %d rim%s: a shell can be a sheet with one "
                        "rim, a tube with two, or a closed surface with one handle or none",
-                       name, surface->genus, surface->rims);
+                       name, surface->genus, surface->rims, surface->rims == 1 ? "" : "s");
     RefTriangulation twice = {0};
     double *weight = ref_harmonic_weights(surface, &map->clamped);
     SmCode code = SM_OK;

@@ -106,6 +106,25 @@ TEST(random_points_on_a_sphere_are_all_mapped)
     }
 }
 
+/* Points off the surface by up to 0.4 of their distances, and others anywhere. */
+TEST(noise_and_outliers_leave_a_sphere)
+{
+    needs_solver();
+    SmMesh ball = sphere_mesh(30, 0.3, &seed);
+    Points points = points_new(ball.vertex_count + 60);
+    for (long p = 0; p < points.count; p++)
+        for (int d = 0; d < 3; d++)
+            points.x[p][d] = p < ball.vertex_count
+                                 ? ball.position[p][d] + random_between(&seed, -0.4, 0.4) / 30
+                                 : random_between(&seed, -1.5, 1.5);
+    RefSurfaceMap map = map_of(&points, false, REF_MAP_SPHERE);
+    assert_true(map.angle_median < 2 && map.angle_95 < 8);
+    assert_true(away(&points, &map, 0.05) <= 60);
+    ref_surface_map_free(&map);
+    points_free(&points);
+    sm_mesh_free(&ball);
+}
+
 /* Sheets and tubes of points keep their rims, on exact grids, too, where four points lie on a
  * circle; L is 1, and the sides are known. */
 TEST(sheets_and_tubes_of_points_keep_their_rims)
