@@ -1,6 +1,7 @@
 #include "locate.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 
 #include "../../../lib/error.h"
@@ -40,6 +41,7 @@ static void halve(RefPlaced *placed, int count, int axis)
 
 static void fit_box(const RefPlaced *placed, RefLocatorNode *node)
 {
+    for (int n = node->first; n < node->first + node->count; n++) node->sum += placed[n].value;
     for (int d = 0; d < 2; d++) {
         node->low[d] = INFINITY;
         node->high[d] = -INFINITY;
@@ -129,4 +131,34 @@ const RefPlaced *ref_locator_at(const RefLocator *locator, const double theta[2]
     }
     for (int i = 0; i < 3; i++) weight[i] = sum > 0 ? weight[i] / sum : 1.0 / 3;
     return s.best;
+}
+
+static double add_up(const RefLocator *locator, int at, const double low[2], const double high[2])
+{
+    const RefLocatorNode *node = locator->node + at;
+    bool inside = true;
+    double sum = 0;
+    for (int d = 0; d < 2; d++) {
+        if (node->high[d] < low[d] || node->low[d] > high[d]) return 0;
+        inside = inside && node->low[d] >= low[d] && node->high[d] <= high[d];
+    }
+    if (inside) return node->sum;
+    if (node->child >= 0)
+        return add_up(locator, node->child, low, high) +
+               add_up(locator, node->child + 1, low, high);
+    for (int n = node->first; n < node->first + node->count; n++) {
+        const RefPlaced *placed = locator->placed + n;
+        bool holds = true;
+        for (int d = 0; d < 2; d++) {
+            double middle = middle_of(placed, d) / 3;
+            holds = holds && middle >= low[d] && middle < high[d];
+        }
+        if (holds) sum += placed->value;
+    }
+    return sum;
+}
+
+double ref_locator_sum(const RefLocator *locator, const double low[2], const double high[2])
+{
+    return add_up(locator, 0, low, high);
 }

