@@ -41,12 +41,13 @@ static int best_place(const double *score, const bool *taken, int count)
 }
 
 /* Four places of the rim, of so much length up to each; rising. */
-static void choose(const double (*x)[3], const double *along, double whole, int count, int place[4])
+static void choose(const double (*x)[3], const double *along, double whole, int count,
+                   double window, int place[4])
 {
     double *turn = sm_alloc((size_t)count, sizeof *turn);
     double *score = sm_alloc((size_t)count, sizeof *score);
     bool *taken = sm_alloc((size_t)count, sizeof *taken), *near = sm_alloc((size_t)count, 1);
-    for (int n = 0; n < count; n++) turn[n] = turning(x, along, whole, count, n, whole / 24);
+    for (int n = 0; n < count; n++) turn[n] = turning(x, along, whole, count, n, window);
     for (int k = 0; k < 4; k++) {
         int best = best_place(turn, near, count);
         bool sharp = best >= 0 && turn[best] > M_PI / 4;
@@ -58,7 +59,7 @@ static void choose(const double (*x)[3], const double *along, double whole, int 
         if (!sharp) best = best_place(score, taken, count);
         place[k] = best;
         taken[best] = true;
-        for (int n = 0; n < count; n++) near[n] |= apart(whole, along[n], along[best]) < whole / 8;
+        for (int n = 0; n < count; n++) near[n] |= apart(whole, along[n], along[best]) < window;
     }
     for (int k = 1; k < 4; k++) /* in order */
         for (int j = k; j > 0 && place[j - 1] > place[j]; j--) {
@@ -69,7 +70,11 @@ static void choose(const double (*x)[3], const double *along, double whole, int 
     sm_free_all(turn, score, taken, near);
 }
 
-void ref_cuts_corners(const RefTriangulation *surface, int corner[4])
+/* Four corners on a disk's rim, which has as many edges at least, in its order: where the rim turns
+ * most, as seen over a share of it to both sides, by 45 degrees at least and as far apart; and
+ * where there are fewer than four such places, those that are farthest along the rim from the
+ * others. */
+static void find_corners(const RefTriangulation *surface, double share, int corner[4])
 {
     int first = 0, count = 0, place[4];
     while (surface->rim[first] < 0) first++;
@@ -83,7 +88,7 @@ void ref_cuts_corners(const RefTriangulation *surface, int corner[4])
         whole += surface->length[at];
         memcpy(x[n], surface->position[surface->vertex[at]], sizeof *x);
     }
-    choose((const double(*)[3])x, along, whole, count, place);
+    choose((const double(*)[3])x, along, whole, count, share * whole, place);
     for (int k = 0; k < 4; k++) corner[k] = rim[place[k]];
     sm_free_all(rim, along, x);
 }
@@ -311,8 +316,8 @@ static void centre(long count, const double *share, double *u)
 }
 
 /* The mean squares and products of functions: those of candidates, and behind them that of the
- * curvature and, for a disk, that of four corners. */
-enum { MOST_FUNCTIONS = CANDIDATES + 2 };
+ * curvature and, for a disk, those of some choices of four corners. */
+enum { CORNERS = 3, MOST_FUNCTIONS = CANDIDATES + 1 + CORNERS };
 typedef double Products[MOST_FUNCTIONS][MOST_FUNCTIONS];
 
 /* The variance of log L with these branch points, the curvature's function being number `count`. */
@@ -341,22 +346,18 @@ static void choose_from(const Products product, int count, int wanted, int level
         choose_from(product, count, wanted, level + 1, pick, least, best);
 }
 
-/* Of the candidates, the `wanted` ones that let log L vary least; for a disk, none where four
- * corners let it vary as little or nearly so. */
-static SmCode choose_tips(const RefTriangulation *surface, const double *weight, int count,
-                          const int *candidate, int wanted, int tip[4], bool *found, SmError *error)
+/* Functions of all that may turn the plane, and their products. */
+static SmCode multiply(const RefTriangulation *surface, const double *weight, int count,
+                       const int *candidate, int choices, int (*corner)[4], Products product,
+                       SmError *error)
 {
-    int corner[4], pick[5], best[4] = {0}, functions = count + 1 + (wanted == 2);
-    double *u[MOST_FUNCTIONS], least = INFINITY;
-    Products product = {{0}};
-    double *share = sm_alloc((size_t)surface->vertices, sizeof *share);
+    double *u[MOST_FUNCTIONS], *share = sm_alloc((size_t)surface->vertices, sizeof *share);
+    int functions = count + 1 + choices;
     for (int k = 0; k < functions; k++) u[k] = sm_alloc((size_t)surface->vertices, sizeof **u);
     for (int k = 0; k < count; k++) u[k][candidate[k]] = M_PI;
     bend(surface, u[count], share);
-    if (wanted == 2) {
-        ref_cuts_corners(surface, corner);
-        for (int k = 0; k < 4; k++) u[count + 1][surface->vertex[corner[k]]] = M_PI / 2;
-    }
+    for (int n = 0; n < choices; n++)
+        for (int k = 0; k < 4; k++) u[count + 1 + n][surface->vertex[corner[n][k]]] = M_PI / 2;
     SmCode code = ref_harmonic_potentials(surface, weight, functions, u, u, error);
     for (int k = 0; k < functions && code == SM_OK; k++) centre(surface->vertices, share, u[k]);
     for (int i = 0; i < functions && code == SM_OK; i++)
@@ -365,24 +366,41 @@ static SmCode choose_tips(const RefTriangulation *surface, const double *weight,
                 product[i][j] += share[v] * u[i][v] * u[j][v];
             product[j][i] = product[i][j];
         }
-    choose_from((const double(*)[MOST_FUNCTIONS])product, count, wanted, 0, pick, &least, best);
-    for (int k = 0; k < wanted; k++) tip[k] = candidate[best[k]];
-    *found = least < INFINITY;
-    if (wanted == 2) { /* the corners are simpler: unless they are clearly worse */
-        pick[0] = count + 1;
-        *found = *found &&
-                 least < 0.5 * variance((const double(*)[MOST_FUNCTIONS])product, count, 1, pick);
-    }
     for (int k = 0; k < functions; k++) free(u[k]);
     free(share);
     return code;
 }
 
+/* Of the candidates, the `wanted` ones that let log L vary least, unless the best four corners of a
+ * disk, which are simpler, let it vary as little or nearly so. */
+static SmCode choose_tips(const RefTriangulation *surface, const double *weight, int count,
+                          const int *candidate, int wanted, int tip[4], bool *found, int corner[4],
+                          SmError *error)
+{
+    int pick[5], best[4] = {0}, corners[CORNERS][4] = {{0}}, choices = wanted == 2 ? CORNERS : 0;
+    double least = INFINITY, least_flat = INFINITY, share = 1.0 / 48;
+    Products product = {{0}};
+    for (int n = 0; n < choices; n++, share /= 4) find_corners(surface, share, corners[n]);
+    SmCode code = multiply(surface, weight, count, candidate, choices, corners, product, error);
+    const double(*products)[MOST_FUNCTIONS] = (const double(*)[MOST_FUNCTIONS])product;
+    choose_from(products, count, wanted, 0, pick, &least, best);
+    for (int k = 0; k < wanted; k++) tip[k] = candidate[best[k]];
+    for (int n = 0; n < choices; n++) {
+        int one = count + 1 + n;
+        double flat = variance(products, count, 1, &one);
+        if (!(flat < least_flat)) continue;
+        least_flat = flat;
+        memcpy(corner, corners[n], sizeof corners[n]);
+    }
+    *found = least < 0.5 * least_flat;
+    return code;
+}
+
 SmCode ref_cuts_slits(const RefTriangulation *surface, const double *weight, bool *cut, int *tip,
-                      SmError *error)
+                      int corner[4], SmError *error)
 {
     Search s = search_new(surface);
-    int candidate[CANDIDATES], tips[4], count = 0, wanted = surface->rims ? 2 : 4;
+    int candidate[CANDIDATES] = {0}, tips[4], count = 0, wanted = surface->rims ? 2 : 4;
     bool found = false;
     search_from(&s, 0);
     int next = farthest(&s);
@@ -392,9 +410,8 @@ SmCode ref_cuts_slits(const RefTriangulation *surface, const double *weight, boo
         search_from(&s, next);
         next = farthest(&s);
     }
-    SmCode code = count < wanted
-                      ? SM_OK
-                      : choose_tips(surface, weight, count, candidate, wanted, tips, &found, error);
+    SmCode code =
+        choose_tips(surface, weight, count, candidate, wanted, tips, &found, corner, error);
     *tip = -1;
     if (code == SM_OK && found) {
         for (int k = 0; k < wanted; k += 2) slit(&s, tips[k], tips[k + 1], cut);

@@ -7,9 +7,7 @@
 #include "../../../lib/csr.h"
 #include "../solve/solver.h"
 
-static const double least_weight = 1e-4;
-
-double *ref_harmonic_weights(const RefTriangulation *surface, long *clamped)
+double *ref_harmonic_weights(const RefTriangulation *surface, double least, long *clamped)
 {
     long corners = 3 * surface->triangles;
     double *weight = sm_alloc((size_t)corners, sizeof *weight);
@@ -21,8 +19,8 @@ double *ref_harmonic_weights(const RefTriangulation *surface, long *clamped)
         int twin = surface->twin[c];
         double sum = cotangent[ref_corner_last(c)];
         if (twin >= 0) sum += cotangent[ref_corner_last(twin)];
-        weight[c] = fmax(sum / 2, least_weight);
-        *clamped += twin < c && sum / 2 < -1e-6;
+        weight[c] = least > 0 ? fmax(sum / 2, least) : sum / 2;
+        *clamped += least > 0 && twin < c && sum / 2 < -1e-6;
     }
     free(cotangent);
     return weight;

@@ -10,10 +10,11 @@
 
 #include "triangulation.h"
 
-/* Weights of edges by corners. What the surface's angles leave below 1e-4 is that, so that maps of
- * harmonic forms have no triangle that is turned over (Gortler, Gotsman and Thurston 2006); after
- * ref_triangulation_delaunay() this concerns few, and `clamped` counts them. The caller frees. */
-double *ref_harmonic_weights(const RefTriangulation *surface, long *clamped);
+/* Weights of edges by corners. With `least` above 0, those that are below it are set to it, so that
+ * maps of harmonic forms have no triangle that is turned over (Gortler, Gotsman and Thurston 2006).
+ * After ref_triangulation_delaunay() only edges on rims across from wide angles, and few others,
+ * are below 0; `clamped` counts those that were set. 0: as they are. The caller frees. */
+double *ref_harmonic_weights(const RefTriangulation *surface, double least, long *clamped);
 
 /* Makes `count` forms harmonic: adds differences of functions that are 0 at vertices that are
  * `held` ([vertices], or NULL: none). One factorisation for all. Errors: solver.h's. */

@@ -31,7 +31,9 @@ typedef struct {
     double *step[2], *at[2]; /* [corners], [vertices] of the surface, or of it taken twice */
     double side[2];          /* of the rectangle */
     double shift;            /* of what is beyond the upper side */
+    double least;            /* weight */
     const RefTriangulation *surface; /* that `at` is of */
+    RefTriangulation twice;          /* where that is it */
 } Plane;
 
 const char *ref_map_kind_name(RefMapKind kind)
@@ -95,12 +97,10 @@ static SmCode between(const RefTriangulation *surface, const double *weight,
 /* The rectangle of a disk: theta1 between two opposite parts of its rim, theta2 between the others.
  * Both energies are too large, by nearly as much: the rectangle's shape is the root of their
  * ratio. */
-static SmCode map_disk(const RefTriangulation *surface, const double *weight, Plane *plane,
-                       SmError *error)
+static SmCode map_disk(const RefTriangulation *surface, const double *weight, const int corner[4],
+                       Plane *plane, SmError *error)
 {
-    int corner[4];
     unsigned char *part = sm_alloc((size_t)surface->vertices, sizeof *part);
-    ref_cuts_corners(surface, corner);
     for (int k = 0, at = corner[0]; k < 4; k++) {
         do {
             part[surface->vertex[at]] |= 1 << k;
@@ -127,9 +127,9 @@ static SmCode map_disk(const RefTriangulation *surface, const double *weight, Pl
     return SM_OK;
 }
 
-/* The cylinder of an annulus: theta2 between its rims, theta1 once around. */
-static SmCode map_annulus(const RefTriangulation *surface, const double *weight, Plane *plane,
-                          SmError *error)
+/* The cylinder of an annulus: theta2 between its rims, theta1 once around from a vertex. */
+static SmCode map_annulus(const RefTriangulation *surface, const double *weight, int origin,
+                          Plane *plane, SmError *error)
 {
     unsigned char *part = sm_alloc((size_t)surface->vertices, sizeof *part);
     int root = 0;
@@ -153,7 +153,7 @@ static SmCode map_annulus(const RefTriangulation *surface, const double *weight,
     plane->side[1] = sqrt(area * ratio);
     for (int d = 0; d < 2; d++) {
         scale(surface, plane->side[d], plane->step[d]);
-        plane->at[d] = ref_harmonic_integral(surface, root, plane->step[d]);
+        plane->at[d] = ref_harmonic_integral(surface, d == 0 ? origin : root, plane->step[d]);
     }
     return SM_OK;
 }
@@ -211,12 +211,11 @@ static SmCode map_half(const RefTriangulation *twice, double area, int tip, Plan
                        SmError *error)
 {
     long clamped;
-    double *weight = ref_harmonic_weights(twice, &clamped);
+    double *weight = ref_harmonic_weights(twice, plane->least, &clamped);
     SmCode code = plane->kind == REF_MAP_SPHERE
                       ? map_torus(twice, weight, 2 * area, tip, plane, error)
-                      : map_annulus(twice, weight, plane, error);
+                      : map_annulus(twice, weight, tip, plane, error);
     plane->side[1] /= 2;
-    if (code == SM_OK && plane->kind == REF_MAP_CAP) plane->shift = 2 * plane->at[0][tip];
     free(weight);
     return code;
 }
@@ -520,21 +519,22 @@ static void finish(const Plane *plane, RefSurfaceMap *map)
     carry(plane, map);
 }
 
-/* The plane of a sphere or a disk by the surface taken twice, which is the caller's to free; the
- * disk may turn out to be a cap. */
-static SmCode unfold(const RefTriangulation *surface, const double *weight, RefTriangulation *twice,
-                     Plane *plane, SmError *error)
+/* The plane of a sphere or a disk by the surface taken twice; the disk may turn out to be a cap. */
+static SmCode unfold(const RefTriangulation *surface, const double *weight, Plane *plane,
+                     SmError *error)
 {
     bool *cut = sm_alloc(3 * (size_t)surface->triangles, sizeof *cut);
-    int tip;
-    SmCode code = ref_cuts_slits(surface, weight, cut, &tip, error);
+    int tip, corner[4] = {0};
+    SmCode code = ref_cuts_slits(surface, weight, cut, &tip, corner, error);
     if (code == SM_OK && tip < 0) {
-        code = map_disk(surface, weight, plane, error);
+        code = map_disk(surface, weight, corner, plane, error);
     } else if (code == SM_OK) {
         if (plane->kind == REF_MAP_DISK) plane->kind = REF_MAP_CAP;
-        *twice = ref_triangulation_twice(surface, cut);
-        plane->surface = twice;
-        code = map_half(twice, ref_triangulation_area(surface), twice->vertex[tip], plane, error);
+        RefTriangulation twice = ref_triangulation_twice(surface, cut);
+        plane->twice = twice;
+        plane->surface = &plane->twice;
+        code = map_half(plane->surface, ref_triangulation_area(surface), twice.vertex[tip], plane,
+                        error);
     }
     free(cut);
     return code;
@@ -553,36 +553,66 @@ static bool has_map(const RefTriangulation *surface, RefMapKind *kind)
     return true;
 }
 
-static SmCode map_any(const char *name, RefSurfaceMap *map, SmError *error)
+static void plane_free(Plane *plane)
 {
-    const RefTriangulation *surface = &map->surface->triangles;
-    Plane plane = {.surface = surface};
-    if (!has_map(surface, &plane.kind))
-        return sm_fail(error, SM_INPUT,
-                       "%s: a surface of genus %d with %d rim%s: a shell can be a sheet with one "
-                       "rim, a tube with two, or a closed surface with one handle or none",
-                       name, surface->genus, surface->rims, surface->rims == 1 ? "" : "s");
-    RefTriangulation twice = {0};
-    double *weight = ref_harmonic_weights(surface, &map->clamped);
+    for (int d = 0; d < 2; d++) sm_free_all(plane->step[d], plane->at[d]);
+    ref_triangulation_free(&plane->twice);
+}
+
+/* With weights that are not below `least`. */
+static SmCode find_plane(const RefTriangulation *surface, double least, RefMapKind kind,
+                         Plane *plane, long *clamped, SmError *error)
+{
     SmCode code = SM_OK;
-    switch (plane.kind) {
+    double *weight = ref_harmonic_weights(surface, least, clamped);
+    *plane = (Plane){.surface = surface, .kind = kind, .least = least};
+    switch (kind) {
     case REF_MAP_DISK:
     case REF_MAP_CAP:
     case REF_MAP_SPHERE:
-        code = unfold(surface, weight, &twice, &plane, error);
+        code = unfold(surface, weight, plane, error);
         break;
     case REF_MAP_ANNULUS:
-        code = map_annulus(surface, weight, &plane, error);
+        code = map_annulus(surface, weight, 0, plane, error);
         break;
     case REF_MAP_TORUS:
-        code = map_torus(surface, weight, ref_triangulation_area(surface), 0, &plane, error);
+        code = map_torus(surface, weight, ref_triangulation_area(surface), 0, plane, error);
         break;
+    }
+    free(weight);
+    return code;
+}
+
+static bool turns_over(const Plane *plane, long triangles)
+{
+    for (int t = 0; t < triangles; t++) {
+        RefPlaced placed = place_triangle(plane, t);
+        if (!(plane_area(&placed) > 0)) return true;
+    }
+    return false;
+}
+
+/* With the weights as they are, or where a triangle is turned over, with none below 1e-4. */
+static SmCode map_any(const char *name, RefSurfaceMap *map, SmError *error)
+{
+    const RefTriangulation *surface = &map->surface->triangles;
+    RefMapKind kind;
+    Plane plane;
+    if (!has_map(surface, &kind))
+        return sm_fail(
+            error, SM_INPUT,
+            "%s: a surface of genus %d with %d rim%s: a shell is a sheet with one rim, a "
+            "tube with two, or a closed surface with one handle at most; close or cut "
+            "what is more",
+            name, surface->genus, surface->rims, surface->rims == 1 ? "" : "s");
+    SmCode code = find_plane(surface, 0, kind, &plane, &map->clamped, error);
+    if (code == SM_OK && turns_over(&plane, surface->triangles)) {
+        plane_free(&plane);
+        code = find_plane(surface, 1e-4, kind, &plane, &map->clamped, error);
     }
     map->kind = plane.kind;
     if (code == SM_OK) finish(&plane, map);
-    for (int d = 0; d < 2; d++) sm_free_all(plane.step[d], plane.at[d]);
-    ref_triangulation_free(&twice);
-    free(weight);
+    plane_free(&plane);
     return code;
 }
 
@@ -612,10 +642,12 @@ static SmCode map_mesh(const SmMesh *mesh, const char *name, double share, long 
     SmCode code = ref_triangulation_create(mesh, name, share, surface, error);
     if (code == SM_OK) {
         map->dropped = mesh->triangle_count - surface->triangles;
-        map->closed = ref_triangulation_close(surface, hole, edges);
+        map->closed = ref_triangulation_close(surface, hole, edges, largest_hole);
         map->handles = cut_handles(surface);
         if (surface->rims > (surface->genus == 0 ? 2 : 0))
-            map->closed += ref_triangulation_close(surface, largest_hole, edges);
+            map->closed += ref_triangulation_close(surface, largest_hole, 0, 0);
+        if (surface->rims == 1) /* which needs four corners */
+            map->closed += ref_triangulation_close(surface, 0, 3, INFINITY);
         map->turned = ref_triangulation_delaunay(surface);
         ref_triangulation_split(surface);
         map->triangles = surface->triangles;

@@ -1,15 +1,17 @@
-/* surface_map.h - conformal parameters of a surface that is given by a mesh (meshless section 4.2;
- * Gu and Yau 2003).
+/* surface_map.h - conformal parameters of a surface that is given by a mesh or by points (meshless
+ * section 4.2; Gu and Yau 2003).
  *
- * Every surface here is a flat one, cut open to a rectangle:
- *     a disk has four corners on its rim, and a rim along each side;
- *     a cap is a disk that bulges: it closes around the first axis, with its rim below, and is
- * folded above (chart.h); an annulus (a tube) closes around the first axis, with rims above and
- * below; a torus closes around both axes, with a shift; a sphere is folded as a pillowcase is:
- * taken twice and glued along two cuts it is a torus, of which it is the half that half a turn
- * leaves (chart.h). Harmonic one-forms of least periods are found on it (harmonic.h); their
- * energies say the rectangle's shape, and their integrals are the parameters. The triangulation's
- * edges are turned to a Delaunay one before, whose weights keep all triangles the right way up. */
+ * Every surface here gets a flat metric that is conformal to its own, and cut open it is a
+ * rectangle (chart.h):
+ *     - a disk has four corners on its rim, and a part of the rim along each side;
+ *     - an annulus (a tube) closes around the first axis, with rims above and below;
+ *     - a cap, a disk that bulges, does so, too, but is folded above;
+ *     - a torus closes around both axes, with a shift;
+ *     - a sphere is folded above and below.
+ * Taken twice and glued along a cut, what has a fold is an annulus or a torus, of which it is the
+ * half that half a turn leaves. Harmonic one-forms are found on these (harmonic.h): their energies
+ * say the rectangle's shape, and their integrals are the parameters. Edges of the triangulation are
+ * turned before to a Delaunay one, whose weights are not negative. */
 #ifndef REF_SURFACE_MAP_H
 #define REF_SURFACE_MAP_H
 
@@ -44,19 +46,21 @@ typedef struct {
     struct RefMapSurface *surface; /* private */
 } RefSurfaceMap;
 
-/* Maps the surface. Pieces of up to 1% of the triangles are dropped, and rims that are shorter than
- * a tenth of the root of the area are closed, each with a vertex in its middle; where there are
- * more rims than a map may have, also such that are shorter than a half. The mesh has passed
- * sm_mesh_prepare(), and is no longer needed afterwards; `name` is for messages. Up to three
- * factorisations of [vertices], for a cap or a sphere one of them and of [2 * vertices]. The caller
- * frees. Errors: triangulation.h's and solver.h's; SM_INPUT, a surface of another genus or of more
- * rims.
- */
+/* Maps the surface. Pieces of up to 1% of the triangles are dropped. Rims are closed, each with a
+ * vertex in its middle, that are shorter than a tenth of the root of the area, or than a half if
+ * they have three edges or there are more than a map may have. Of handles that are too many, lines
+ * around them or through their tunnels are cut that are shorter than a half, and both sides closed.
+ * The mesh has passed sm_mesh_prepare(), and is no longer needed afterwards; `name` is for
+ * messages. Up to three factorisations of [vertices], for a cap or a sphere one of them and one of
+ * [2 * vertices]. The caller frees. Errors: triangulation.h's and solver.h's; SM_INPUT, a surface
+ * of another genus or of more rims, and one whose parts stick out so far that over 1% of the
+ * triangles collapse in double precision. */
 SmCode ref_surface_map_create(const SmMesh *mesh, const char *name, RefSurfaceMap *map,
                               SmError *error);
 
 /* The same of points, by the triangles between them (surface/local_triangles.h), of which pieces of
- * up to 5% are dropped; also rims of up to twelve edges are closed. `normal` may be NULL. Errors
+ * up to 5% are dropped; rims of up to twelve edges are closed, too, up
+ * to half the root of the area. `normal` may be NULL. Errors
  * also: local_triangles.h's. */
 SmCode ref_surface_map_of_points(long count, const double (*position)[3], const double (*normal)[3],
                                  const char *name, RefSurfaceMap *map, SmError *error);

@@ -133,6 +133,39 @@ TEST(a_sheet_of_right_angles_is_mercators_rectangle)
     assert_true(error[0] < 2.5 && error[1] < 0.6 * error[0]);
 }
 
+static void on_strip(double u, double v, double x[3])
+{
+    x[0] = 20 * u;
+    x[1] = v;
+    x[2] = 0;
+}
+
+/* A flat one, exactly, though the corners of its ends are near each other. */
+TEST(a_long_strip_is_its_rectangle)
+{
+    needs_solver();
+    SmMesh mesh = grid_mesh(80, 4, false, false, on_strip, 0.2, &seed);
+    RefSurfaceMap map = map_of(&mesh, REF_MAP_DISK);
+    double shape = map.chart.high[1] / map.chart.high[0];
+    assert_true(fabs(fmin(shape, 1 / shape) * 20 - 1) < 1e-6);
+    for (long v = 0; v < map.vertices; v++) assert_true(fabs(map.factor[v] - 1) < 1e-6);
+    assert_true(map.angle_95 < 1e-4);
+    check_chart(&mesh, &map);
+    ref_surface_map_free(&map);
+    sm_mesh_free(&mesh);
+}
+
+/* Three squares around, whose rims have three edges but are no holes. */
+TEST(a_coarse_tube_stays_open)
+{
+    needs_solver();
+    SmMesh mesh = grid_mesh(3, 1, true, false, on_cylinder, 0, &seed);
+    RefSurfaceMap map = map_of(&mesh, REF_MAP_ANNULUS);
+    assert_true(map.angle_95 < 0.1);
+    ref_surface_map_free(&map);
+    sm_mesh_free(&mesh);
+}
+
 enum { RING = 3 }; /* the radius of a torus, in those of its tube */
 static void on_torus(double u, double v, double x[3])
 {

@@ -367,16 +367,16 @@ static void close_rim(RefTriangulation *surface, int first, long edges, const do
         fill_rim(surface, first, middle, edges);
 }
 
-int ref_triangulation_close(RefTriangulation *surface, double limit, long most)
+int ref_triangulation_close(RefTriangulation *surface, double limit, long most, double few_limit)
 {
-    double longest = limit * sqrt(ref_triangulation_area(surface)), length, middle[3];
+    double unit = sqrt(ref_triangulation_area(surface)), length, middle[3];
     long corners = 3 * surface->triangles;
     int closed = 0;
     for (int rim = 0; rim < surface->rims; rim++) {
         int first = 0;
         while (first < corners && surface->rim[first] != rim) first++;
         long edges = measure_rim(surface, first, &length, middle);
-        if (length > longest && edges > most) continue;
+        if (length > (edges > most ? limit : fmax(limit, few_limit)) * unit) continue;
         close_rim(surface, first, edges, middle);
         closed++;
     }

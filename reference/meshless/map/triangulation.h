@@ -62,8 +62,9 @@ SmCode ref_triangulation_create(const SmMesh *mesh, const char *name, double sha
 void ref_triangulation_free(RefTriangulation *surface);
 
 /* Closes rims that are shorter than `limit` times the root of the surface's area, or have at most
- * so many edges, with triangles around the middle of each; returns how many. */
-int ref_triangulation_close(RefTriangulation *surface, double limit, long edges);
+ * so many edges and are shorter than `few_limit` times it, with triangles around the middle of
+ * each; returns how many. */
+int ref_triangulation_close(RefTriangulation *surface, double limit, long edges, double few_limit);
 
 /* Cuts along a closed line of inner edges, given by `count` corners, and closes both sides as
  * above: a handle less, where the line does not part the surface. */
