@@ -218,6 +218,21 @@ void ref_rows_free(RefRows *rows)
     *rows = (RefRows){0};
 }
 
+RefRows ref_rows_copy(const RefRows *rows)
+{
+    RefRows copy = {0};
+    if (rows->count == 0) return copy;
+    size_t entries = (size_t)rows->start[rows->count];
+    copy.count = rows->count;
+    copy.start = sm_alloc((size_t)rows->count + 1, sizeof *copy.start);
+    copy.column = sm_alloc(entries, sizeof *copy.column);
+    copy.value = sm_alloc(entries, sizeof *copy.value);
+    memcpy(copy.start, rows->start, ((size_t)rows->count + 1) * sizeof *copy.start);
+    memcpy(copy.column, rows->column, entries * sizeof *copy.column);
+    memcpy(copy.value, rows->value, entries * sizeof *copy.value);
+    return copy;
+}
+
 long ref_rows_begin(RefRows *rows, int entries)
 {
     long at = rows->count ? rows->start[rows->count] : 0, end = at + entries;

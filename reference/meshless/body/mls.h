@@ -53,6 +53,9 @@ long ref_rows_begin(RefRows *rows, int entries);
 /* Appends a row: the displacement along an axis where the shape functions
  * were taken. */
 void ref_rows_displacement(RefRows *rows, const RefShape *shape, int axis);
+
+/* The caller frees. */
+RefRows ref_rows_copy(const RefRows *rows);
 void ref_rows_free(RefRows *rows);
 
 /* Row `row` applied to u. */

@@ -61,6 +61,19 @@ void ref_pairs_free(RefPairs *pairs)
     *pairs = (RefPairs){0};
 }
 
+long ref_pairs_at(const RefPairs *pairs, int i, int j)
+{
+    long low = pairs->start[i], high = pairs->start[i + 1] - 1;
+    while (low < high) {
+        long middle = (low + high) / 2;
+        if (pairs->partner[middle] < j)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
 SmCode ref_pairs_check(const RefPairs *pairs, SmError *error)
 {
     if (9 * pairs->start[pairs->count] <= INT_MAX) return SM_OK;

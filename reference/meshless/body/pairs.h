@@ -23,6 +23,9 @@ void ref_pairs_meet(RefPairs *pairs, int count, const int *node);
 void ref_pairs_end(RefPairs *pairs);
 void ref_pairs_free(RefPairs *pairs);
 
+/* Where the sums of a pair are, I <= J, which have met. O(log partners). */
+long ref_pairs_at(const RefPairs *pairs, int i, int j);
+
 /* SM_INPUT where matrices would have more than 2^31 entries. */
 SmCode ref_pairs_check(const RefPairs *pairs, SmError *error);
 

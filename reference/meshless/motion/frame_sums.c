@@ -59,4 +59,33 @@ static void place(const RefSkin *skin, const RefSkinBlock *block, const double (
     }
 }
 
-const RefFrameSums SM_ISA_NAME(ref_frame_sums) = {apply, add, place};
+static void slopes(int count, const int *node, const double (*slope)[REF_FRAME_SLOPES],
+                   const double (*u)[3], double sum[3][REF_FRAME_SLOPES])
+{
+    double x[REF_FRAME_SLOPES] = {0}, y[REF_FRAME_SLOPES] = {0}, z[REF_FRAME_SLOPES] = {0};
+    for (int n = 0; n < count; n++) {
+        const double *at = u[node[n]];
+        for (int j = 0; j < REF_FRAME_SLOPES; j++) {
+            x[j] += slope[n][j] * at[0];
+            y[j] += slope[n][j] * at[1];
+            z[j] += slope[n][j] * at[2];
+        }
+    }
+    memcpy(sum[0], x, sizeof x);
+    memcpy(sum[1], y, sizeof y);
+    memcpy(sum[2], z, sizeof z);
+}
+
+static void spread(int count, const int *node, const double (*slope)[REF_FRAME_SLOPES],
+                   const double gain[3][REF_FRAME_SLOPES], double (*right)[3])
+{
+    for (int n = 0; n < count; n++)
+        for (int d = 0; d < 3; d++) {
+            double sum = 0;
+#pragma omp simd reduction(+ : sum)
+            for (int j = 0; j < REF_FRAME_SLOPES; j++) sum += slope[n][j] * gain[d][j];
+            right[node[n]][d] += sum;
+        }
+}
+
+const RefFrameSums SM_ISA_NAME(ref_frame_sums) = {apply, add, place, slopes, spread};

@@ -6,6 +6,8 @@
 
 #include "skin.h"
 
+enum { REF_FRAME_SLOPES = 8 }; /* of a shell's cell, at once */
+
 typedef struct {
     /* sum[r] = row[r] . z, of `rows` rows of `modes`. */
     void (*apply)(int modes, int rows, const double *row, const double *z, double *sum);
@@ -16,6 +18,13 @@ typedef struct {
     /* ref_skin_place() of one block. */
     void (*place)(const RefSkin *skin, const RefSkinBlock *block, const double (*moved)[3],
                   double (*position)[3]);
+
+    /* sum[d][j] = sum over the nodes of slope[n][j] u[node[n]][d]; and what that is the transpose
+     * of: right[node[n]][d] += sum over j of slope[n][j] gain[d][j]. */
+    void (*slopes)(int count, const int *node, const double (*slope)[REF_FRAME_SLOPES],
+                   const double (*u)[3], double sum[3][REF_FRAME_SLOPES]);
+    void (*spread)(int count, const int *node, const double (*slope)[REF_FRAME_SLOPES],
+                   const double gain[3][REF_FRAME_SLOPES], double (*right)[3]);
 } RefFrameSums;
 extern RefFrameSums ref_frame_sums;
 

@@ -13,15 +13,8 @@ static void add_squares(const RefSamples *samples, long p, double weight, RefPai
         for (long f = samples->start[p]; f < samples->start[p + 1]; f++) {
             int i = samples->node[e], j = samples->node[f];
             if (i > j) continue;
-            long low = pairs->start[i], high = pairs->start[i + 1] - 1;
-            while (low < high) {
-                long middle = (low + high) / 2;
-                if (pairs->partner[middle] < j)
-                    low = middle + 1;
-                else
-                    high = middle;
-            }
-            pairs->mass[low] += weight * samples->part[e][0] * samples->part[f][0];
+            pairs->mass[ref_pairs_at(pairs, i, j)] +=
+                weight * samples->part[e][0] * samples->part[f][0];
         }
 }
 

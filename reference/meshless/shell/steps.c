@@ -5,7 +5,9 @@
 void ref_steps_free(RefSteps *steps)
 {
     ref_solver_destroy(steps->solver);
-    sm_free_all(steps->u, steps->v, steps->force, steps->change, steps->right, steps->other);
+    ref_rows_free(&steps->rows);
+    sm_free_all(steps->u, steps->v, steps->force, steps->speed, steps->value, steps->right,
+                steps->other);
     *steps = (RefSteps){.solver = NULL};
 }
 
@@ -27,10 +29,12 @@ SmCode ref_steps_create(const RefMatrices *matrices, const RefDamping *damping, 
     SmCode code = ref_solver_create(matrices, -(1 + h * a) / share_of_K(damping, h), rows,
                                     &steps->solver, error);
     if (code != SM_OK) return code;
-    double **vector[] = {&steps->u,      &steps->v,     &steps->force,
-                         &steps->change, &steps->right, &steps->other};
-    for (int n = 0; n < 6; n++)
+    double **vector[] = {&steps->u, &steps->v, &steps->force, &steps->right, &steps->other};
+    for (int n = 0; n < 5; n++)
         *vector[n] = sm_alloc((size_t)matrices->stiffness.columns, sizeof(double));
+    if (rows) steps->rows = ref_rows_copy(rows);
+    steps->speed = sm_alloc((size_t)steps->rows.count, sizeof *steps->speed);
+    steps->value = sm_alloc((size_t)steps->rows.count, sizeof *steps->value);
     return SM_OK;
 }
 
@@ -38,15 +42,16 @@ void ref_steps_go(RefSteps *steps)
 {
     double a = steps->damping.mass_damping, b = steps->damping.stiffness_damping, h = steps->h;
     int size = steps->matrices->stiffness.columns;
-    double *right = steps->right, *other = steps->other, *change = steps->change;
-    for (int n = 0; n < size; n++) change[n] = steps->u[n] + (b + h) * steps->v[n];
-    ref_sparse_apply(&steps->matrices->stiffness, 1, change, right);
-    ref_sparse_apply(&steps->matrices->mass, 3, steps->v, other);
-    double times = h / share_of_K(&steps->damping, h);
-    for (int n = 0; n < size; n++) right[n] = times * (steps->force[n] - right[n] - a * other[n]);
-    ref_solver_solve(steps->solver, right, NULL, change);
+    double *right = steps->right, *end = steps->other, lead = 1 / (b + h);
+    for (int n = 0; n < size; n++) end[n] = steps->v[n] + (1 + h * a) * lead * steps->u[n];
+    ref_sparse_apply(&steps->matrices->mass, 3, end, right);
+    double times = 1 / share_of_K(&steps->damping, h);
+    for (int n = 0; n < size; n++) right[n] = times * (right[n] + h * steps->force[n]);
+    for (long r = 0; r < steps->rows.count; r++)
+        steps->value[r] = steps->speed[r] + lead * ref_rows_apply(&steps->rows, r, steps->u);
+    ref_solver_solve(steps->solver, right, steps->value, end);
     for (int n = 0; n < size; n++) {
-        steps->v[n] += change[n];
+        steps->v[n] = end[n] - lead * steps->u[n];
         steps->u[n] += h * steps->v[n];
     }
 }

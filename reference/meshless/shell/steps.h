@@ -10,20 +10,24 @@ typedef struct {
     RefDamping damping;
     double h; /* the step */
     RefSolver *solver;
-    double *u, *v;                  /* [3 nodes] displacements' parameters and velocities */
-    double *force;                  /* [3 nodes] the caller's to fill in; kept from step to step */
-    double *change, *right, *other; /* [3 nodes] of a step */
+    RefRows rows;
+    double *u, *v;         /* [3 nodes] displacements' parameters and velocities */
+    double *force;         /* [3 nodes] the caller's to fill in; kept from step to step */
+    double *speed;         /* [rows] of what they bind, the caller's to fill in; 0 at first */
+    double *right, *other; /* [3 nodes] of a step */
+    double *value;         /* [rows] */
 } RefSteps;
 
-/* At rest. Factorises M + h C + h^2 K once for all steps, under `rows` (NULL: none), whose values
- * keep their velocity. The caller frees. Errors: SM_USAGE, a step that is not above 0 or a negative
- * damping; solver.h's. */
+/* At rest. Factorises M + h C + h^2 K once for all steps, under `rows` (NULL: none), which are
+ * copied. The caller frees. Errors: SM_USAGE, a step that is not above 0 or a negative damping;
+ * solver.h's. */
 SmCode ref_steps_create(const RefMatrices *matrices, const RefDamping *damping, double h,
                         const RefRows *rows, RefSteps *steps, SmError *error);
 void ref_steps_free(RefSteps *steps);
 
-/* (M + h C + h^2 K) dv = h (F - K u - (C + h K) v), v += dv, u += h v. O(entries of the factors).
- */
+/* (M + h C + h^2 K) v = M v' + h (F - K u'), u = u' + h v, v' and u' from the step before. Solved
+ * for v + u' / (b + h), of which the right side needs no K: 1 / h (M (v' + (1 + h a) / (b + h) u')
+ * + h F). O(entries of the factors). */
 void ref_steps_go(RefSteps *steps);
 
 /* v . M v / 2 + u . K u / 2, which never grows where nothing pulls. */

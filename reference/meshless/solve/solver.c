@@ -10,11 +10,13 @@ const bool ref_solver_built = true;
 struct RefSolver {
     cholmod_common common;
     cholmod_factor *factor;
+    cholmod_dense *result, *work[2]; /* of solves, once there was one */
     int size, rows, rank;
     RefRows A;
     double *response; /* [rows][size] K'^-1 A^T, row by row */
     double *S;        /* [rows][rows] Cholesky factor of A K'^-1 A^T, rows as in `order` */
     int *order;       /* [rows]; the first `rank` count */
+    double *y;        /* [rows] of a solve */
 };
 
 /* LAPACK's Cholesky factorisation with pivots: PA of a semidefinite matrix, its rank. */
@@ -25,21 +27,6 @@ static void row_of(const RefRows *rows, long row, double *dense)
 {
     for (long e = rows->start[row]; e < rows->start[row + 1]; e++)
         dense[rows->column[e]] += rows->value[e];
-}
-
-static RefRows copy_rows(const RefRows *rows)
-{
-    RefRows copy = {0};
-    if (!rows || rows->count == 0) return copy;
-    size_t entries = (size_t)rows->start[rows->count];
-    copy.count = rows->count;
-    copy.start = sm_alloc((size_t)rows->count + 1, sizeof *copy.start);
-    copy.column = sm_alloc(entries, sizeof *copy.column);
-    copy.value = sm_alloc(entries, sizeof *copy.value);
-    memcpy(copy.start, rows->start, ((size_t)rows->count + 1) * sizeof *copy.start);
-    memcpy(copy.column, rows->column, entries * sizeof *copy.column);
-    memcpy(copy.value, rows->value, entries * sizeof *copy.value);
-    return copy;
 }
 
 /* K - shift M as CHOLMOD has it, with M spread over the three axes. */
@@ -104,11 +91,10 @@ static void solve_free(RefSolver *solver, const double *b, double *x)
                            .x = (double *)b,
                            .xtype = CHOLMOD_REAL,
                            .dtype = CHOLMOD_DOUBLE};
-    cholmod_dense *result;
 #pragma omp teams num_teams(1) thread_limit(1)
-    result = cholmod_solve(CHOLMOD_A, solver->factor, &right, &solver->common);
-    memcpy(x, result->x, size * sizeof *x);
-    cholmod_free_dense(&result, &solver->common);
+    cholmod_solve2(CHOLMOD_A, solver->factor, &right, NULL, &solver->result, NULL, &solver->work[0],
+                   &solver->work[1], &solver->common);
+    memcpy(x, solver->result->x, size * sizeof *x);
 }
 
 /* What the rows' multipliers do, and the Schur complement with its independent rows. */
@@ -121,6 +107,7 @@ static void complement(RefSolver *solver)
     solver->response = sm_alloc(rows * size, sizeof *solver->response);
     solver->S = sm_alloc(rows * rows, sizeof *solver->S);
     solver->order = sm_alloc(rows, sizeof *solver->order);
+    solver->y = sm_alloc(rows, sizeof *solver->y);
     for (size_t r = 0; r < rows; r++) {
         memset(dense, 0, size * sizeof *dense);
         row_of(&solver->A, (long)r, dense);
@@ -154,7 +141,7 @@ SmCode ref_solver_create(const RefMatrices *matrices, double shift, const RefRow
     cholmod_start(common);
     common->print = 0;
     solver->size = matrices->stiffness.columns;
-    solver->A = copy_rows(rows);
+    if (rows) solver->A = ref_rows_copy(rows);
     solver->rows = (int)solver->A.count;
     cholmod_sparse *matrix = shifted(matrices, shift, common);
     if (matrix && solver->rows) matrix = held(matrix, matrices, &solver->A, common);
@@ -183,9 +170,11 @@ void ref_solver_destroy(RefSolver *solver)
 {
     if (!solver) return;
     cholmod_free_factor(&solver->factor, &solver->common);
+    cholmod_free_dense(&solver->result, &solver->common);
+    for (int k = 0; k < 2; k++) cholmod_free_dense(&solver->work[k], &solver->common);
     cholmod_finish(&solver->common);
     ref_rows_free(&solver->A);
-    sm_free_all(solver->response, solver->S, solver->order, solver);
+    sm_free_all(solver->response, solver->S, solver->order, solver->y, solver);
 }
 
 /* y = S^-1 y over the rows that count, in their order. */
@@ -211,7 +200,7 @@ void ref_solver_solve(RefSolver *solver, const double *b, const double *target, 
     else
         memset(x, 0, size * sizeof *x);
     if (!solver->rank) return;
-    double *y = sm_alloc((size_t)solver->rank, sizeof *y);
+    double *y = solver->y;
     for (int i = 0; i < solver->rank; i++) {
         int row = solver->order[i];
         y[i] = ref_rows_apply(&solver->A, row, x) - (target ? target[row] : 0);
@@ -221,7 +210,6 @@ void ref_solver_solve(RefSolver *solver, const double *b, const double *target, 
         const double *response = solver->response + (size_t)solver->order[i] * size;
         for (size_t n = 0; n < size; n++) x[n] -= y[i] * response[n];
     }
-    free(y);
 }
 
 int ref_solver_rank(const RefSolver *solver)

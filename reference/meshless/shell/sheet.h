@@ -1,0 +1,79 @@
+/* sheet.h - a shell that moves: implicit steps (steps.h), warped (warp.h), under gravity, pushes
+ * and constraints on position and orientation (meshless sections 5.2 and 5.3.3). */
+#ifndef REF_SHEET_H
+#define REF_SHEET_H
+
+#include "steps.h"
+#include "warp.h"
+
+typedef struct {
+    RefShellOptions shell;
+    RefDamping damping;
+    double h; /* the step */
+    double gravity[3];
+} RefSheetOptions;
+
+/* Points of the surface that move together. The first one says where, and unless `loose` the
+ * surface's tangents there turn with it. */
+typedef struct {
+    int count; /* 1 or more; of a loose one 1 */
+    double (*theta)[3];
+    bool loose;
+} RefSheetGrip;
+
+/* What holds now. */
+typedef struct {
+    bool loose;
+    int points;
+    long row, cell;       /* its first row of the warp's: the points, then two slopes; the cell */
+    double (*x)[3];       /* [points] at rest */
+    double tangent[2][3]; /* at the first point */
+    double pose[3][4];    /* where it is to be, by a turn and a shift of the place at rest */
+    double turn[3];       /* the pose's rotation vector */
+    /* Of all but the first: how what tangents gain moves it beside that one, [nodes]; the slopes of
+     * its three coordinates by the parameters, [3][3 nodes], and what forces along these do. */
+    double *reach, *slope, *answer;
+} RefSheetHold;
+
+typedef struct {
+    RefSheetOptions options;
+    RefShell shell;
+    RefSteps steps;
+    RefWarp warp;
+    double (*weight)[3], (*force)[3]; /* [nodes] gravity; and with what pushes add to it */
+    double (*impulse)[3];             /* [nodes] the next step's pushes */
+    bool pushed;
+    int holds;
+    RefSheetHold *hold;
+    RefRows rows; /* of the steps: what the first hold binds, and shapes and turns of others */
+    double *aim;  /* [rows] their values */
+    double *pull; /* [3 nodes] scratch */
+} RefSheet;
+
+/* At rest and free. `sheet` must not move in memory. The caller frees. Errors: those of shell.h and
+ * steps.h. */
+SmCode ref_sheet_create(const RefChart *chart, const RefSheetOptions *options, RefSheet *sheet,
+                        SmError *error);
+void ref_sheet_free(RefSheet *sheet);
+
+/* Other grips than before, where they are; the motion goes on. Two factorisations. Errors:
+ * solver.h's; SM_INPUT, a point that the shell's functions do not cover. */
+SmCode ref_sheet_hold(RefSheet *sheet, int grips, const RefSheetGrip *grip, SmError *error);
+
+/* Where hold number k is to be after the next step: pose (x, 1), its left part a rotation, of x at
+ * rest. */
+void ref_sheet_aim(RefSheet *sheet, int k, const double pose[3][4]);
+
+/* One step of h. Forces, and what the holds beyond the first need to be where they are to be, act
+ * along the slopes that the surface's places have by the parameters. What is left of the holds
+ * after the step, whose slopes are those of its beginning, is spread over the surface, which meets
+ * them to rounding, and is taken up in the next step. Three solves for each hold but the first. */
+void ref_sheet_step(RefSheet *sheet);
+
+/* After u and v were changed from outside: where the surface is then. */
+void ref_sheet_pose(RefSheet *sheet);
+
+/* How far a hold's points are off, and its tangents, these as turns. */
+void ref_sheet_off(const RefSheet *sheet, int k, double *place, double *turn);
+
+#endif

@@ -1,0 +1,245 @@
+/* Shells that turn far, and are held. */
+#include "../motion/rotation.h"
+#include "sheet.h"
+#include "test_charts.h"
+#include "test_shell.h"
+
+static unsigned seed = 1;
+
+#define CONST(array) ((const double(*)[3])(array))
+
+/* A strip of length 1 along x, held at x = 0. */
+static RefChart strip_chart(void)
+{
+    return (RefChart){.high = {1, 0.2}, .factor = factor_one, .place = place_flat};
+}
+
+static const RefSheetOptions strip = {.shell = {.across = 2,
+                                                .basis = REF_MLS_PLANE_QUADRATIC,
+                                                .thickness = 0.005,
+                                                .material = {1e6, 0.3, 1000}},
+                                      .damping = {2, 0.01},
+                                      .h = 0.01};
+
+static void sheet_of(const RefChart *chart, const RefSheetOptions *options, RefSheet *sheet)
+{
+    SmError error = {0};
+    if (ref_sheet_create(chart, options, sheet, &error) != SM_OK) fail_msg("%s", error.text);
+}
+
+/* Points of a grip: the first in the middle of a side's edge, two others beside it. */
+static RefSheetGrip grip_at(double theta1, double in)
+{
+    RefSheetGrip grip = {.count = 4, .theta = sm_alloc(4, sizeof *grip.theta)};
+    double point[4][2] = {{theta1, 0.1}, {theta1, 0.02}, {theta1, 0.18}, {theta1 + in, 0.1}};
+    for (int p = 0; p < 4; p++) memcpy(grip.theta[p], point[p], sizeof point[p]);
+    return grip;
+}
+
+/* The surface now. */
+static void surface_at(const RefSheet *sheet, double theta1, double theta2, double x[3])
+{
+    RefShape shape = ref_shape_create(&sheet->shell.nodes);
+    assert_true(
+        ref_mls_at(&sheet->shell.nodes, sheet->shell.basis, (double[]){theta1, theta2, 0}, &shape));
+    memset(x, 0, 3 * sizeof *x);
+    for (int n = 0; n < shape.count; n++)
+        for (int d = 0; d < 3; d++)
+            x[d] += shape.value[n] *
+                    (sheet->shell.X[shape.node[n]][d] + sheet->warp.moved[shape.node[n]][d]);
+    ref_shape_free(&shape);
+}
+
+static double length_along(const RefSheet *sheet)
+{
+    double sum = 0, from[3], to[3];
+    enum { PARTS = 400 };
+    surface_at(sheet, 0, 0.1, from);
+    for (int n = 1; n <= PARTS; n++) {
+        surface_at(sheet, (double)n / PARTS, 0.1, to);
+        double way[3] = {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
+        sum += sqrt(sm_dot(way, way));
+        memcpy(from, to, sizeof from);
+    }
+    return sum;
+}
+
+/* Both ends held; the far one is turned about y and led along the arc that the strip is then. */
+TEST(a_strip_bent_by_right_angles_keeps_its_length)
+{
+    needs_solver();
+    RefChart chart = strip_chart();
+    RefSheet sheet;
+    SmError error = {0};
+    sheet_of(&chart, &strip, &sheet);
+    RefSheetGrip grip[2] = {grip_at(0, 0.1), grip_at(1, -0.1)};
+    assert_int_equal(ref_sheet_hold(&sheet, 2, grip, &error), SM_OK);
+    for (int step = 1; step <= 400; step++) {
+        double angle = fmin(step / 200.0, 1) * M_PI / 2, c = cos(angle), s = sin(angle);
+        double pose[3][4] = {{c, 0, s, 0}, {0, 1, 0, 0}, {-s, 0, c, 0}};
+        pose[0][3] = s / angle - c;
+        pose[2][3] = -(1 - c) / angle + s;
+        ref_sheet_aim(&sheet, 1, (const double(*)[4])pose);
+        ref_sheet_step(&sheet);
+        for (int k = 0; k < 2; k++) {
+            double place, turn;
+            ref_sheet_off(&sheet, k, &place, &turn);
+            assert_true(place < 1e-6 && turn < 1e-6);
+        }
+    }
+    assert_true(fabs(length_along(&sheet) - 1) < 0.02);
+    for (int k = 0; k < 2; k++) free(grip[k].theta);
+    ref_sheet_free(&sheet);
+}
+
+/* A bowl: part of a sphere, around z all the way. */
+static const double R = 0.7;
+
+static void bowl(RefSheet *sheet)
+{
+    RefChart chart = {.low = {0, -0.6},
+                      .high = {2 * M_PI, 1.3},
+                      .factor = factor_of_mercator,
+                      .place = place_mercator,
+                      .data = &R};
+    RefSheetOptions options = strip;
+    options.shell.across = 4;
+    options.shell.nodes = 150;
+    ref_chart_wrap(&chart, true, false);
+    sheet_of(&chart, &options, sheet);
+}
+
+/* Forces of random signs at the nodes; and displacements, smooth ones of the surface's place. */
+static void random_field(const RefSheet *sheet, double size, bool smooth, double (*field)[3])
+{
+    double A[3][3], b[3];
+    for (int d = 0; d < 3; d++) {
+        b[d] = random_between(&seed, -3, 3);
+        for (int e = 0; e < 3; e++) A[d][e] = random_between(&seed, -1, 1);
+    }
+    for (long n = 0; n < sheet->warp.nodes; n++)
+        for (int d = 0; d < 3; d++)
+            field[n][d] = size * (smooth ? sin(b[d] + 2 * sm_dot(A[d], sheet->warp.X[n]))
+                                         : random_between(&seed, -1, 1));
+}
+
+/* In the limit of small displacements the surface moves by u. */
+TEST(small_displacements_are_exact)
+{
+    needs_solver();
+    RefSheet sheet;
+    bowl(&sheet);
+    double(*u)[3] = (double(*)[3])sheet.steps.u, size = 1e-6;
+    random_field(&sheet, size, false, u);
+    ref_sheet_pose(&sheet);
+    for (long n = 0; n < sheet.warp.nodes; n++)
+        for (int d = 0; d < 3; d++)
+            assert_true(fabs(sheet.warp.moved[n][d] - u[n][d]) < 1e-4 * size);
+    ref_sheet_free(&sheet);
+}
+
+/* u = w x X + t, of any size, turns and moves the whole. */
+TEST(rigid_motions_are_exact)
+{
+    needs_solver();
+    RefSheet sheet;
+    bowl(&sheet);
+    for (int trial = 0; trial < 5; trial++) {
+        double w[3], t[3], Rw[9], mean[3] = {0}, middle[3] = {0};
+        for (int d = 0; d < 3; d++) w[d] = random_between(&seed, -2, 2);
+        for (int d = 0; d < 3; d++) t[d] = random_between(&seed, -2, 2);
+        ref_rotation(w, Rw);
+        for (long n = 0; n < sheet.warp.nodes; n++) {
+            double u[3];
+            sm_cross(w, sheet.warp.X[n], u);
+            for (int d = 0; d < 3; d++) {
+                sheet.steps.u[3 * n + d] = u[d] + t[d];
+                mean[d] += sheet.warp.mass[n] * (u[d] + t[d]);
+                middle[d] += sheet.warp.mass[n] * sheet.warp.X[n][d];
+            }
+        }
+        ref_sheet_pose(&sheet);
+        for (long n = 0; n < sheet.warp.nodes; n++)
+            for (int d = 0; d < 3; d++) {
+                double wanted = middle[d] + mean[d], normal = 0;
+                for (int e = 0; e < 3; e++) {
+                    wanted += Rw[3 * d + e] * (sheet.warp.X[n][e] - middle[e]);
+                    normal += Rw[3 * d + e] * sheet.warp.rest_normal[n][e];
+                }
+                assert_true(fabs(sheet.warp.X[n][d] + sheet.warp.moved[n][d] - wanted) < 1e-9);
+                assert_true(fabs(sheet.warp.rest_normal[n][d] + sheet.warp.turned[n][d] - normal) <
+                            1e-9);
+            }
+        assert_true(ref_steps_energy(&sheet.steps) < 1e-9);
+    }
+    ref_sheet_free(&sheet);
+}
+
+/* What forces do to the parameters is the slope of their work, free or held, however the surface
+ * has turned. */
+TEST(forces_are_slopes_of_their_work)
+{
+    needs_solver();
+    RefSheet sheet;
+    bowl(&sheet);
+    size_t nodes = (size_t)sheet.warp.nodes;
+    double(*force)[3] = sm_alloc(nodes, sizeof *force), (*way)[3] = sm_alloc(nodes, sizeof *way);
+    double(*at)[3] = sm_alloc(nodes, sizeof *at);
+    double point[2][3] = {{1, 0}, {4, 0.3}};
+    RefSheetGrip grip[2] = {{1, point, false}, {1, point + 1, true}};
+    for (int held = 0; held < 2; held++) {
+        SmError error = {0};
+        assert_int_equal(ref_sheet_hold(&sheet, 2 * held, grip, &error), SM_OK);
+        double(*u)[3] = (double(*)[3])sheet.steps.u;
+        random_field(&sheet, 1, false, force);
+        random_field(&sheet, 1, true, way);
+        random_field(&sheet, 0.4, true, at);
+        ref_warp_pull(&sheet.warp, CONST(force));
+        double work[2] = {0}, slope = 0, step = 1e-5;
+        for (int side = 0; side < 2; side++) {
+            for (size_t n = 0; n < nodes; n++)
+                for (int d = 0; d < 3; d++) u[n][d] = at[n][d] + (side ? step : -step) * way[n][d];
+            ref_warp_pose(&sheet.warp, CONST(u));
+            for (size_t n = 0; n < nodes; n++) work[side] += sm_dot(force[n], sheet.warp.moved[n]);
+        }
+        ref_warp_pose(&sheet.warp, CONST(at));
+        for (size_t n = 0; n < nodes; n++) slope += sm_dot(sheet.warp.pulled[n], way[n]);
+        assert_true(fabs((work[1] - work[0]) / (2 * step) - slope) < 1e-6 * fabs(slope));
+    }
+    sm_free_all(force, way, at);
+    ref_sheet_free(&sheet);
+}
+
+/* A free bowl that is pushed off its middle goes on as its momentum says, spinning or not. */
+TEST(pushes_become_momentum)
+{
+    needs_solver();
+    RefSheet sheet;
+    bowl(&sheet);
+    double all[3] = {0}, before[3] = {0}, mass = 0;
+    for (long n = 0; n < sheet.warp.nodes; n += 7)
+        for (int d = 0; d < 3; d++) {
+            sheet.impulse[n][d] = random_between(&seed, -1, 1);
+            all[d] += sheet.impulse[n][d];
+        }
+    sheet.pushed = true;
+    double *one = sm_alloc((size_t)sheet.warp.nodes, sizeof *one),
+           *M = sm_alloc((size_t)sheet.warp.nodes, sizeof *M);
+    for (long n = 0; n < sheet.warp.nodes; n++) one[n] = 1;
+    ref_sparse_apply(&sheet.shell.matrices.mass, 1, one, M);
+    for (long n = 0; n < sheet.warp.nodes; n++) mass += M[n];
+    double share = 1 + sheet.options.h * sheet.options.damping.mass_damping;
+    for (int step = 1; step <= 20; step++) {
+        ref_sheet_step(&sheet);
+        for (int d = 0; d < 3; d++) {
+            double place = 0;
+            for (long n = 0; n < sheet.warp.nodes; n++)
+                place += sheet.warp.mass[n] * sheet.warp.moved[n][d];
+            double wanted = all[d] / mass * sheet.options.h / pow(share, step);
+            assert_true(fabs(place - before[d] - wanted) < 1e-9 * fabs(all[d] / mass));
+            before[d] = place;
+        }
+    }
+    sm_free_all(one, M);
+    ref_sheet_free(&sheet);
+}

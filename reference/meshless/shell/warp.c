@@ -1,0 +1,396 @@
+#include "warp.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../../lib/csr.h"
+#include "../../../lib/vector.h"
+#include "../motion/rotation.h"
+
+enum { PLACES = REF_WARP_PLACES, LANES = REF_FRAME_SLOPES };
+
+static void release(RefWarp *warp)
+{
+    ref_solver_destroy(warp->solver);
+    ref_rows_free(&warp->rows);
+    free(warp->target);
+    free(warp->bound);
+    warp->solver = NULL;
+    warp->target = NULL;
+    warp->bound = NULL;
+}
+
+void ref_warp_free(RefWarp *warp)
+{
+    release(warp);
+    ref_matrices_free(&warp->laplacian);
+    sm_free_all(warp->start, warp->node, warp->slope, warp->place, warp->near, warp->other,
+                warp->lean, warp->X, warp->rest_normal, warp->mass, warp->moved, warp->turned,
+                warp->pulled, warp->right, warp->pull, warp->drawn, warp->column[0],
+                warp->column[1]);
+    *warp = (RefWarp){.nodes = 0};
+}
+
+/* ---- at rest */
+
+static void note_place(const RefFrame *frame, double area, RefWarpPlace *place)
+{
+    const double *g = frame->inverse, (*a)[3] = frame->tangent;
+    memcpy(place->tangent, frame->tangent, sizeof place->tangent);
+    memcpy(place->normal, frame->normal, sizeof place->normal);
+    for (int k = 0; k < 2; k++) {
+        double up[3];
+        for (int d = 0; d < 3; d++) up[d] = g[2] * a[!k][d] + g[k] * a[k][d];
+        sm_cross(frame->normal, up, place->across[k]);
+    }
+    for (int m = 0; m < 3; m++) place->metric[m] = area * frame->area * g[m];
+}
+
+/* The middles of a cell's quarters, where the shell was integrated, too: covers reach them. */
+static void place_at(const double middle[2], const double edge[2], int p, double theta[3])
+{
+    for (int d = 0; d < 2; d++) theta[d] = middle[d] + ((p >> d & 1) - 0.5) * edge[d] / 2;
+    theta[2] = 0;
+}
+
+static void add_slopes(const RefShape *shape, int place, int *number, long *room, RefWarp *warp)
+{
+    long from = warp->start[warp->cells], end = warp->start[warp->cells + 1];
+    for (int n = 0; n < shape->count; n++) {
+        int node = shape->node[n];
+        if (number[node] < 0) {
+            sm_make_room(warp->node, room[0], end + 1);
+            sm_make_room(warp->slope, room[1], end + 1);
+            memset(warp->slope[end], 0, sizeof *warp->slope);
+            number[node] = (int)(end - from);
+            warp->node[end++] = node;
+        }
+        for (int k = 0; k < 2; k++)
+            warp->slope[from + number[node]][2 * place + k] += shape->gradient[n][k];
+    }
+    warp->start[warp->cells + 1] = end;
+}
+
+static void make_cells(const RefShell *shell, RefWarp *warp)
+{
+    RefShape shape = ref_shape_create(&shell->nodes);
+    int *number = sm_alloc((size_t)warp->nodes, sizeof *number);
+    long room[2] = {0};
+    size_t cells = (size_t)shell->tree.leaves;
+    warp->start = sm_alloc(cells + 1, sizeof *warp->start);
+    warp->place = sm_alloc(PLACES * cells, sizeof *warp->place);
+    for (long n = 0; n < warp->nodes; n++) number[n] = -1;
+    for (long c = 0; c < shell->tree.count; c++) {
+        double middle[2], edge[2], theta[3];
+        if (shell->tree.cell[c].child >= 0) continue;
+        ref_quadtree_cell(&shell->tree, shell->tree.cell + c, middle, edge);
+        warp->start[warp->cells + 1] = warp->start[warp->cells];
+        for (int p = 0; p < PLACES; p++) {
+            RefFrame frame;
+            place_at(middle, edge, p, theta);
+            ref_shell_at(shell, theta, &shape, &frame);
+            note_place(&frame, edge[0] * edge[1] / PLACES, warp->place + PLACES * warp->cells + p);
+            add_slopes(&shape, p, number, room, warp);
+        }
+        for (long e = warp->start[warp->cells]; e < warp->start[warp->cells + 1]; e++)
+            number[warp->node[e]] = -1;
+        warp->cells++;
+    }
+    ref_shape_free(&shape);
+    free(number);
+}
+
+/* Normals at nodes; where functions are not defined there, at the middle of a quarter of the cell.
+ */
+static void make_normals(const RefShell *shell, RefWarp *warp)
+{
+    RefShape shape = ref_shape_create(&shell->nodes);
+    long room = 0, lean_room = 0;
+    for (long n = 0; n < warp->nodes; n++) {
+        double theta[3], middle[2], edge[2];
+        RefFrame frame;
+        memcpy(theta, shell->nodes.position[n], sizeof theta);
+        if (!ref_shell_at(shell, theta, &shape, &frame)) {
+            int cell = ref_quadtree_at(&shell->tree, theta);
+            ref_quadtree_cell(&shell->tree, shell->tree.cell + cell, middle, edge);
+            place_at(middle, edge, (theta[0] > middle[0]) + 2 * (theta[1] > middle[1]), theta);
+            ref_shell_at(shell, theta, &shape, &frame);
+        }
+        long end = warp->near[n] + shape.count;
+        sm_make_room(warp->other, room, end);
+        sm_make_room(warp->lean, lean_room, end);
+        for (int k = 0; k < shape.count; k++) {
+            warp->other[warp->near[n] + k] = shape.node[k];
+            memcpy(warp->lean[warp->near[n] + k], shape.gradient[k], sizeof *warp->lean);
+        }
+        warp->near[n + 1] = end;
+        memcpy(warp->rest_normal[n], frame.normal, sizeof frame.normal);
+    }
+    ref_shape_free(&shape);
+}
+
+/* int g^kl phi_I,k phi_J,l over the places. */
+static void make_laplacian(RefWarp *warp)
+{
+    RefPairs pairs = ref_pairs_begin(warp->nodes);
+    int *sorted = sm_alloc((size_t)warp->nodes, sizeof *sorted);
+    for (long c = 0; c < warp->cells; c++) {
+        int count = (int)(warp->start[c + 1] - warp->start[c]);
+        memcpy(sorted, warp->node + warp->start[c], (size_t)count * sizeof *sorted);
+        sm_sort_ints(sorted, count);
+        ref_pairs_meet(&pairs, count, sorted);
+    }
+    ref_pairs_end(&pairs);
+    for (long c = 0; c < warp->cells; c++)
+        for (long e = warp->start[c]; e < warp->start[c + 1]; e++)
+            for (long f = warp->start[c]; f < warp->start[c + 1]; f++) {
+                int i = warp->node[e], j = warp->node[f];
+                if (i > j) continue;
+                double *sum = pairs.mass + ref_pairs_at(&pairs, i, j);
+                for (int p = 0; p < PLACES; p++) {
+                    const double *q = warp->place[PLACES * c + p].metric;
+                    const double *a = warp->slope[e] + 2 * p, *b = warp->slope[f] + 2 * p;
+                    *sum += q[0] * a[0] * b[0] + q[1] * a[1] * b[1] +
+                            q[2] * (a[0] * b[1] + a[1] * b[0]);
+                }
+            }
+    RefMatrices sums;
+    ref_pairs_matrices(&pairs, 1, &sums);
+    warp->laplacian.stiffness = sums.mass;
+    sums.mass = (RefSparse){0};
+    ref_matrices_free(&sums);
+    ref_pairs_free(&pairs);
+    free(sorted);
+}
+
+static void share_mass(const RefShell *shell, RefWarp *warp)
+{
+    double *one = sm_alloc((size_t)warp->nodes, sizeof *one), sum = 0;
+    for (long n = 0; n < warp->nodes; n++) one[n] = 1;
+    ref_sparse_apply(&shell->matrices.mass, 1, one, warp->mass);
+    for (long n = 0; n < warp->nodes; n++) sum += warp->mass[n];
+    for (long n = 0; n < warp->nodes; n++) warp->mass[n] /= sum;
+    free(one);
+}
+
+SmCode ref_warp_create(const RefShell *shell, RefWarp *warp, SmError *error)
+{
+    size_t nodes = (size_t)shell->nodes.count;
+    *warp = (RefWarp){.nodes = shell->nodes.count};
+    double(**field[])[3] = {&warp->X,      &warp->rest_normal, &warp->moved, &warp->turned,
+                            &warp->pulled, &warp->right,       &warp->pull,  &warp->drawn};
+    for (size_t f = 0; f < sizeof field / sizeof *field; f++)
+        *field[f] = sm_alloc(nodes, sizeof **field[f]);
+    memcpy(warp->X, shell->X, nodes * sizeof *warp->X);
+    warp->near = sm_alloc(nodes + 1, sizeof *warp->near);
+    warp->mass = sm_alloc(nodes, sizeof *warp->mass);
+    for (int k = 0; k < 2; k++) warp->column[k] = sm_alloc(nodes, sizeof(double));
+    make_cells(shell, warp);
+    make_normals(shell, warp);
+    make_laplacian(warp);
+    share_mass(shell, warp);
+    return ref_warp_hold(warp, &(RefRows){0}, error);
+}
+
+SmCode ref_warp_hold(RefWarp *warp, const RefRows *rows, SmError *error)
+{
+    RefRows pin = {0};
+    release(warp);
+    warp->rows = ref_rows_copy(rows);
+    warp->target = sm_alloc((size_t)rows->count, sizeof *warp->target);
+    warp->bound = sm_alloc((size_t)rows->count, sizeof *warp->bound);
+    if (rows->count == 0) { /* any constant may be added: the first node's parameter stays */
+        long at = ref_rows_begin(&pin, 1);
+        pin.column[at] = 0;
+        pin.value[at] = 1;
+    }
+    SmCode code =
+        ref_solver_create(&warp->laplacian, 0, rows->count ? rows : &pin, &warp->solver, error);
+    ref_rows_free(&pin);
+    return code;
+}
+
+/* ---- moved */
+
+/* The solution that is nearest to what the right sides ask for, under the rows. */
+static void solve(RefWarp *warp, const double (*right)[3], const double (*target)[3],
+                  double (*left)[3])
+{
+    double *b = warp->column[0], *x = warp->column[1], *bound = warp->bound;
+    for (int d = 0; d < 3; d++) {
+        for (long n = 0; n < warp->nodes; n++) b[n] = right[n][d];
+        for (long r = 0; target && r < warp->rows.count; r++) bound[r] = target[r][d];
+        ref_solver_solve(warp->solver, b, target && warp->rows.count ? bound : NULL, x);
+        for (long n = 0; n < warp->nodes; n++) left[n][d] = x[n];
+    }
+}
+
+void ref_warp_pull(RefWarp *warp, const double (*force)[3])
+{
+    double all[3] = {0};
+    for (long n = 0; n < warp->nodes; n++)
+        for (int d = 0; d < 3; d++) all[d] += force[n][d];
+    for (long n = 0; n < warp->nodes; n++)
+        for (int d = 0; d < 3; d++) {
+            warp->drawn[n][d] = warp->rows.count ? 0 : warp->mass[n] * all[d];
+            warp->right[n][d] = force[n][d] - warp->drawn[n][d];
+        }
+    solve(warp, (const double(*)[3])warp->right, NULL, warp->pull);
+}
+
+/* The turn of a place, from the slopes of u there. */
+static void turn_at(const RefWarpPlace *place, const double slope[2][3], double w[3])
+{
+    double spin = 0;
+    memset(w, 0, 3 * sizeof *w);
+    for (int k = 0; k < 2; k++) {
+        double lean = sm_dot(place->normal, slope[k]);
+        spin += sm_dot(slope[k], place->across[k]) / 2;
+        for (int d = 0; d < 3; d++) w[d] -= lean * place->across[k][d];
+    }
+    for (int d = 0; d < 3; d++) w[d] += spin * place->normal[d];
+}
+
+static void slopes_at(const double sum[3][LANES], int p, double slope[2][3])
+{
+    for (int k = 0; k < 2; k++)
+        for (int d = 0; d < 3; d++) slope[k][d] = sum[d][2 * p + k];
+}
+
+/* area g^kl times two vectors. */
+static void lift(const double q[3], const double vector[2][3], double raised[2][3])
+{
+    for (int k = 0; k < 2; k++)
+        for (int d = 0; d < 3; d++) raised[k][d] = q[k] * vector[k][d] + q[2] * vector[!k][d];
+}
+
+/* What the forces' work, sum f^k . tangent_k, is by the slopes of u: with tangent_k = exp(w) s_k,
+ * s_k = a_k + u,k - w x a_k, and f turned back. */
+static void work_slope(const RefWarpPlace *place, const double w[3], const double R[9],
+                       const double s[2][3], const double f[2][3], double slope[2][3])
+{
+    double moment[3] = {0}, mean[3], back[2][3];
+    for (int k = 0; k < 2; k++) {
+        double turn[3];
+        for (int d = 0; d < 3; d++)
+            back[k][d] = R[d] * f[k][0] + R[3 + d] * f[k][1] + R[6 + d] * f[k][2];
+        sm_cross(s[k], back[k], turn);
+        for (int d = 0; d < 3; d++) moment[d] += turn[d];
+    }
+    ref_rotation_mean(w, moment, mean); /* d exp(w) = exp(w) [Rt^T dw]x */
+    for (int k = 0; k < 2; k++) {
+        double turn[3];
+        sm_cross(place->tangent[k], back[k], turn);
+        for (int d = 0; d < 3; d++) mean[d] -= turn[d];
+    }
+    double spin = sm_dot(place->normal, mean) / 2;
+    for (int k = 0; k < 2; k++) {
+        double lean = sm_dot(place->across[k], mean);
+        for (int d = 0; d < 3; d++)
+            slope[k][d] = back[k][d] - lean * place->normal[d] + spin * place->across[k][d];
+    }
+}
+
+/* One place: what its tangents gain, raised, and what the forces do to u. */
+static void turn_place(const RefWarpPlace *place, const double slope[2][3], const double pull[2][3],
+                       double gain[2][3], double force[2][3])
+{
+    double w[3], R[9], s[2][3], more[2][3], f[2][3];
+    turn_at(place, slope, w);
+    ref_rotation(w, R);
+    for (int k = 0; k < 2; k++) {
+        double turn[3];
+        sm_cross(w, place->tangent[k], turn);
+        for (int d = 0; d < 3; d++) s[k][d] = place->tangent[k][d] + slope[k][d] - turn[d];
+        for (int d = 0; d < 3; d++)
+            more[k][d] = R[3 * d] * s[k][0] + R[3 * d + 1] * s[k][1] + R[3 * d + 2] * s[k][2] -
+                         place->tangent[k][d];
+    }
+    lift(place->metric, more, gain);
+    lift(place->metric, pull, f);
+    work_slope(place, w, R, (const double(*)[3])s, (const double(*)[3])f, force);
+}
+
+static void pose_cell(const RefWarp *warp, long c, const double (*u)[3], const double (*pull)[3],
+                      double (*right)[3], double (*pulled)[3])
+{
+    int count = (int)(warp->start[c + 1] - warp->start[c]);
+    const int *node = warp->node + warp->start[c];
+    const double(*slope)[LANES] = (const double(*)[LANES])(warp->slope + warp->start[c]);
+    double sum[3][LANES], pulls[3][LANES], gain[3][LANES], force[3][LANES];
+    ref_frame_sums.slopes(count, node, slope, u, sum);
+    ref_frame_sums.slopes(count, node, slope, pull, pulls);
+    for (int p = 0; p < PLACES; p++) {
+        double at[2][3], f[2][3], more[2][3], forces[2][3];
+        slopes_at((const double(*)[LANES])sum, p, at);
+        slopes_at((const double(*)[LANES])pulls, p, f);
+        turn_place(warp->place + PLACES * c + p, (const double(*)[3])at, (const double(*)[3])f,
+                   more, forces);
+        for (int k = 0; k < 2; k++)
+            for (int d = 0; d < 3; d++) {
+                gain[d][2 * p + k] = more[k][d];
+                force[d][2 * p + k] = forces[k][d];
+            }
+    }
+    if (right) ref_frame_sums.spread(count, node, slope, (const double(*)[LANES])gain, right);
+    ref_frame_sums.spread(count, node, slope, (const double(*)[LANES])force, pulled);
+}
+
+void ref_warp_slope(const RefWarp *warp, const double (*u)[3], const double (*pull)[3],
+                    double (*force)[3])
+{
+    memset(force, 0, (size_t)warp->nodes * sizeof *force);
+    for (long c = 0; c < warp->cells; c++) pose_cell(warp, c, u, pull, NULL, force);
+}
+
+/* What a normal is by the surface's slopes there, less the one at rest. */
+static void turn_normal(RefWarp *warp, long n)
+{
+    double a[2][3] = {{0}}, normal[3];
+    for (long e = warp->near[n]; e < warp->near[n + 1]; e++) {
+        const double *x = warp->X[warp->other[e]], *moved = warp->moved[warp->other[e]];
+        for (int k = 0; k < 2; k++)
+            for (int d = 0; d < 3; d++) a[k][d] += warp->lean[e][k] * (x[d] + moved[d]);
+    }
+    sm_cross(a[0], a[1], normal);
+    sm_normalize(normal);
+    for (int d = 0; d < 3; d++) warp->turned[n][d] = normal[d] - warp->rest_normal[n][d];
+}
+
+/* Of a body that nothing holds the mean moves as that of u. */
+static void drift(RefWarp *warp, const double (*u)[3])
+{
+    double shift[3] = {0};
+    for (long n = 0; n < warp->nodes; n++)
+        for (int d = 0; d < 3; d++) shift[d] += warp->mass[n] * (u[n][d] - warp->moved[n][d]);
+    for (long n = 0; n < warp->nodes; n++)
+        for (int d = 0; d < 3; d++) warp->moved[n][d] += shift[d];
+}
+
+void ref_warp_pose(RefWarp *warp, const double (*u)[3])
+{
+    size_t size = (size_t)warp->nodes * sizeof *warp->right;
+    memset(warp->right, 0, size);
+    memcpy(warp->pulled, warp->drawn, size);
+    for (long c = 0; c < warp->cells; c++)
+        pose_cell(warp, c, u, (const double(*)[3])warp->pull, warp->right, warp->pulled);
+    solve(warp, (const double(*)[3])warp->right, (const double(*)[3])warp->target, warp->moved);
+    if (!warp->rows.count) drift(warp, u);
+    for (long n = 0; n < warp->nodes; n++) turn_normal(warp, n);
+}
+
+void ref_warp_turn(const RefWarp *warp, long cell, const double (*u)[3], double w[3])
+{
+    double sum[3][LANES];
+    memset(w, 0, 3 * sizeof *w);
+    ref_frame_sums.slopes((int)(warp->start[cell + 1] - warp->start[cell]),
+                          warp->node + warp->start[cell],
+                          (const double(*)[LANES])(warp->slope + warp->start[cell]), u, sum);
+    for (int p = 0; p < PLACES; p++) {
+        double at[2][3], turn[3];
+        slopes_at((const double(*)[LANES])sum, p, at);
+        turn_at(warp->place + PLACES * cell + p, (const double(*)[3])at, turn);
+        for (int d = 0; d < 3; d++) w[d] += turn[d] / PLACES;
+    }
+}

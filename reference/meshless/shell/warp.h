@@ -1,0 +1,77 @@
+/* warp.h - large turns of a shell: where its nodes are when its parameters' displacements are u.
+ *
+ * Strains are linear in u (thin.h), and so are turns: at every sample
+ *     u,k = w x a_k + e_k,  w = a3 x da3 + ((a^k x u,k) . a3 / 2) a3,  e_k in the tangent plane
+ * What the surface is to have there are the tangents exp(w) (a_k + e_k), and it is put where its
+ * own come closest to them: least squares over the samples, a solve with one factorised matrix of
+ * [nodes]^2, the surface's Laplacian (rotation and strain in place of displacements: Huang, Tong,
+ * Zhou, Bao and Desbrun 2011). Small displacements and rigid motions of any size are exact; and
+ * where bending strains nothing, lengths stay, whatever it has turned by: modal warping at the
+ * nodes (motion.h) shortens a strip that is bent by 90 degrees by an eighth. */
+#ifndef REF_WARP_H
+#define REF_WARP_H
+
+#include "../motion/frame_sums.h"
+#include "../solve/solver.h"
+#include "shell.h"
+
+enum { REF_WARP_PLACES = REF_FRAME_SLOPES / 2 }; /* of a cell */
+
+/* The surface in rest at a place. */
+typedef struct {
+    double tangent[2][3], normal[3];
+    double across[2][3]; /* a3 x a^k */
+    double metric[3];    /* area times g^kl */
+} RefWarpPlace;
+
+typedef struct {
+    long nodes, cells;
+    long *start;                       /* [cells + 1] */
+    int *node;                         /* [start[cells]] those that cover a cell's places */
+    double (*slope)[REF_FRAME_SLOPES]; /* [start[cells]] phi,k of its place p at 2 p + k */
+    RefWarpPlace *place;               /* [4 cells] */
+    long *near;                        /* [nodes + 1] what covers the nodes themselves, */
+    int *other;                        /* [near[nodes]] */
+    double (*lean)[2];                 /* [near[nodes]] and phi,k there */
+    RefMatrices laplacian;             /* of the nodes; its stiffness alone */
+    double (*X)[3], (*rest_normal)[3];
+    double *mass; /* [nodes] their shares of 1 */
+
+    RefRows rows; /* of the nodes: what holds; none: the nodes' mean moves as that of u */
+    RefSolver *solver;
+    double (*target)[3]; /* [rows] by how much these move: the caller's */
+
+    double (*moved)[3];  /* [nodes] displacements */
+    double (*turned)[3]; /* [nodes] normals, less those at rest */
+    double (*pulled)[3]; /* [nodes] what forces do to parameters, from their potential's slope */
+    double (*right)[3];  /* [nodes] of the solve */
+    double (*pull)[3];   /* [nodes] what answers to the forces: its slopes pull at tangents; */
+    double (*drawn)[3];  /* [nodes] and the rest of them, whatever the pose */
+    double *column[2];   /* [nodes] */
+    double *bound;       /* [rows] */
+} RefWarp;
+
+/* Of a shell at rest that nothing holds. The caller frees. Errors: solver.h's. */
+SmCode ref_warp_create(const RefShell *shell, RefWarp *warp, SmError *error);
+void ref_warp_free(RefWarp *warp);
+
+/* Holds it by these rows of the nodes, copied; none: frees it. Targets are zero then. One
+ * factorisation. Errors: solver.h's. */
+SmCode ref_warp_hold(RefWarp *warp, const RefRows *rows, SmError *error);
+
+/* Forces at the nodes, [nodes][3], whose work `pulled` is the slope of from the next pose on. Three
+ * solves. */
+void ref_warp_pull(RefWarp *warp, const double (*force)[3]);
+
+/* moved, turned and pulled from u, [nodes][3]. O(cells * covers), and three solves. */
+void ref_warp_pose(RefWarp *warp, const double (*u)[3]);
+
+/* What pulls at the tangents, as the answers to forces at the nodes do, [nodes][3], make of
+ * parameters u: `force`, [nodes][3]. */
+void ref_warp_slope(const RefWarp *warp, const double (*u)[3], const double (*pull)[3],
+                    double (*force)[3]);
+
+/* The turn w that u, [nodes][3], has on average over the places of a cell. */
+void ref_warp_turn(const RefWarp *warp, long cell, const double (*u)[3], double w[3]);
+
+#endif
