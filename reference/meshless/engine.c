@@ -109,7 +109,7 @@ static void make_motion(const SmEngineParams *params, SmEngine *engine)
 /* Where the particles are, and how fast they came there. */
 static void place_particles(SmEngine *engine, bool moving)
 {
-    ref_skin_place(&engine->elastic.skin, CONST(engine->elastic.motion.moved),
+    ref_skin_place(&engine->elastic.skin, CONST(engine->elastic.motion.moved), NULL,
                    engine->elastic.carried);
     for (long s = 0; s < engine->all; s++) {
         long p = engine->elastic.skin.order[s];
@@ -132,7 +132,7 @@ static void make_particles(SmEngine *engine)
     engine->place = sm_alloc(count, sizeof *engine->place);
     engine->impulse = sm_alloc((size_t)engine->elastic.body.nodes.count, sizeof *engine->impulse);
     for (long s = 0; s < engine->all; s++) engine->place[engine->elastic.skin.order[s]] = s;
-    ref_skin_place(&engine->elastic.skin, CONST(engine->elastic.motion.moved),
+    ref_skin_place(&engine->elastic.skin, CONST(engine->elastic.motion.moved), NULL,
                    engine->elastic.carried);
     if (engine->points) return;
     engine->x = sm_alloc(count, sizeof *engine->x);
@@ -261,7 +261,7 @@ static void meshless_set(SmEngine *engine, SmField field, const double (*values)
         return;
     }
     ref_motion_pose(&engine->elastic.motion);
-    ref_skin_place(&engine->elastic.skin, CONST(engine->elastic.motion.moved),
+    ref_skin_place(&engine->elastic.skin, CONST(engine->elastic.motion.moved), NULL,
                    engine->elastic.carried);
     for (long s = 0; s < engine->all; s++)
         memcpy(engine->x[engine->elastic.skin.order[s]], engine->elastic.carried[s],
@@ -497,7 +497,7 @@ static void frames_step(SmEngine *engine, SmLaps *laps)
     take_impulses(engine);
     ref_motion_step(&elastic->motion, engine->h);
     sm_lap(laps, SM_SHAPE_MATCHING);
-    ref_skin_place(&elastic->skin, CONST(elastic->motion.moved), elastic->carried);
+    ref_skin_place(&elastic->skin, CONST(elastic->motion.moved), NULL, elastic->carried);
     sm_lap(laps, SM_OTHER);
 }
 
@@ -515,7 +515,7 @@ static void frames_get(SmEngine *engine, SmField field, double (*values)[3])
         memcpy(z, motion->z, modes * sizeof *z);
         for (size_t k = 0; k < modes; k++) motion->z[k] -= engine->h * motion->speed[k];
         ref_motion_pose(motion);
-        ref_skin_place(&elastic->skin, CONST(motion->moved), before);
+        ref_skin_place(&elastic->skin, CONST(motion->moved), NULL, before);
         memcpy(motion->z, z, modes * sizeof *z);
         ref_motion_pose(motion);
         free(z);

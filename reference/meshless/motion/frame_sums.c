@@ -42,20 +42,33 @@ static void place_lanes(int nodes, const float *weight, const float (*moved)[3],
     memcpy(sum[2], z, sizeof z);
 }
 
+static void gather(const RefSkin *skin, const RefSkinBlock *block, const double (*from)[3],
+                   float (*near)[3])
+{
+    for (int n = 0; n < block->nodes; n++)
+        for (int d = 0; d < 3; d++) near[n][d] = (float)from[skin->node[block->node + n]][d];
+}
+
 static void place(const RefSkin *skin, const RefSkinBlock *block, const double (*moved)[3],
-                  double (*position)[3])
+                  const double (*turned)[3], double (*position)[3])
 {
     const float *weight = skin->weight + block->weight;
-    for (int n = 0; n < block->nodes; n++)
-        for (int d = 0; d < 3; d++) skin->near[n][d] = (float)moved[skin->node[block->node + n]][d];
+    float(*near)[3] = skin->near, (*normal)[3] = skin->near + block->nodes;
+    gather(skin, block, moved, near);
+    if (turned) gather(skin, block, turned, normal);
     for (int begin = 0; begin < block->points; begin += LANES, weight += LANES * block->nodes) {
-        float sum[3][LANES];
+        float sum[3][LANES], up[3][LANES];
+        long first = block->first + begin;
         int end = block->points - begin < LANES ? block->points - begin : LANES;
-        place_lanes(block->nodes, weight, (const float(*)[3])skin->near, sum);
+        place_lanes(block->nodes, weight, (const float(*)[3])near, sum);
+        if (turned) {
+            place_lanes(block->nodes, weight, (const float(*)[3])normal, up);
+            for (int d = 0; d < 3; d++)
+                for (int p = 0; p < LANES; p++) sum[d][p] += skin->lift[first + p] * up[d][p];
+        }
         for (int p = 0; p < end; p++)
             for (int d = 0; d < 3; d++)
-                position[block->first + begin + p][d] =
-                    skin->rest[block->first + begin + p][d] + (double)sum[d][p];
+                position[first + p][d] = skin->rest[first + p][d] + (double)sum[d][p];
     }
 }
 

@@ -17,7 +17,7 @@ typedef struct {
 
     /* ref_skin_place() of one block. */
     void (*place)(const RefSkin *skin, const RefSkinBlock *block, const double (*moved)[3],
-                  double (*position)[3]);
+                  const double (*turned)[3], double (*position)[3]);
 
     /* sum[d][j] = sum over the nodes of slope[n][j] u[node[n]][d]; and what that is the transpose
      * of: right[node[n]][d] += sum over j of slope[n][j] gain[d][j]. */

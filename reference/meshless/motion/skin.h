@@ -1,8 +1,8 @@
 /* skin.h - surface points carried by a meshless body: their shape functions, computed once.
  *
- * Points are grouped by octant into blocks that share their nodes, so that a block's weights are a
- * dense matrix and a frame reads nothing but weights. They are single precision: positions are good
- * to 1e-6 of the displacements. */
+ * Points are grouped by octant or by a shell's cell into blocks that share their nodes, so that a
+ * block's weights are a dense matrix and a frame reads nothing but weights. They are single
+ * precision: positions are good to 1e-6 of the displacements. */
 #ifndef REF_SKIN_H
 #define REF_SKIN_H
 
@@ -23,9 +23,24 @@ typedef struct {
     long blocks;
     RefSkinBlock *block;
     int *node;
-    float *weight;    /* block by block, [room / REF_SKIN_LANES][nodes][REF_SKIN_LANES] */
-    float (*near)[3]; /* scratch: displacements of a block's nodes */
+    float *weight; /* block by block, [room / REF_SKIN_LANES][nodes][REF_SKIN_LANES] */
+    float *lift;   /* [count] how far points are off a shell's surface along its normal; or NULL */
+    float (*near)[3]; /* scratch: displacements of a block's nodes, and how their normals turn */
 } RefSkin;
+
+/* What carries points: their cells, and the weights of the nodes that move each of them; false
+ * where there are too few. */
+typedef struct {
+    const void *data;
+    const RefNodes *nodes;
+    long (*cell)(const void *data, long point);
+    bool (*weigh)(const void *data, long point, RefShape *shape, double *lift);
+    int (*nearest)(const void *data, long point); /* the node that moves a point then */
+} RefSkinCarrier;
+
+/* `lifted`: points of a shell. */
+void ref_skin_build(const RefSkinCarrier *carrier, bool lifted, long count, const double (*x)[3],
+                    RefSkin *skin, long *loose);
 
 /* Points that too few nodes cover move with the node nearest to them; `loose` (may be NULL)
  * receives how many there are: none of those that ref_body_build() was shown. */
@@ -33,8 +48,10 @@ void ref_skin_create(const RefBody *body, long count, const double (*x)[3], RefS
                      long *loose);
 void ref_skin_free(RefSkin *skin);
 
-/* The points' positions, in the skin's order, from the nodes' displacements (motion.h, moved). */
-void ref_skin_place(const RefSkin *skin, const double (*moved)[3], double (*position)[3]);
+/* The points' positions, in the skin's order, from the nodes' displacements (motion.h, moved), and
+ * of lifted points from how the normals there have changed (warp.h, turned); else NULL. */
+void ref_skin_place(const RefSkin *skin, const double (*moved)[3], const double (*turned)[3],
+                    double (*position)[3]);
 
 /* Adds to the nodes what a push at the skin's point `place` does to them. O(log blocks + nodes). */
 void ref_skin_push(const RefSkin *skin, long place, const double push[3], double (*nodes)[3]);

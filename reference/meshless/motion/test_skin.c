@@ -24,7 +24,7 @@ TEST(points_follow_their_shape_functions)
     long loose = -1;
     ref_skin_create(&body, POINTS, (const double(*)[3])x, &skin, &loose);
     assert_int_equal(loose, 0);
-    ref_skin_place(&skin, (const double(*)[3])moved, now);
+    ref_skin_place(&skin, (const double(*)[3])moved, NULL, now);
     RefShape shape = ref_shape_create(&body.nodes);
     int *seen = sm_alloc(POINTS, sizeof *seen);
     for (int p = 0; p < POINTS; p++) {
@@ -43,7 +43,7 @@ TEST(points_follow_their_shape_functions)
     double far[1][3] = {{50, 0, 0}}, there[1][3];
     ref_skin_create(&body, 1, (const double(*)[3])far, &skin, &loose);
     assert_int_equal(loose, 1);
-    ref_skin_place(&skin, (const double(*)[3])moved, there);
+    ref_skin_place(&skin, (const double(*)[3])moved, NULL, there);
     assert_true(fabs(there[0][0] - 50) <= 0.5);
     ref_skin_free(&skin);
     ref_shape_free(&shape);

@@ -1,12 +1,14 @@
 /* Shells that turn far, and are held. */
 #include "../motion/rotation.h"
+#include "foot.h"
 #include "sheet.h"
 #include "test_charts.h"
 #include "test_shell.h"
 
 static unsigned seed = 1;
 
-#define CONST(array) ((const double(*)[3])(array))
+#define CONST(array)  ((const double(*)[3])(array))
+#define CONST2(array) ((const double(*)[2])(array))
 
 /* A strip of length 1 along x, held at x = 0. */
 static RefChart strip_chart(void)
@@ -241,5 +243,46 @@ TEST(pushes_become_momentum)
         }
     }
     sm_free_all(one, M);
+    ref_sheet_free(&sheet);
+}
+
+/* Points beside the surface go with it in rigid motions; in others as their feet and normals do. */
+TEST(points_are_carried)
+{
+    needs_solver();
+    enum { POINTS = 500 };
+    static double theta[POINTS][2], x[POINTS][3], now[POINTS][3];
+    RefSheet sheet;
+    RefSkin skin;
+    long loose;
+    double w[3] = {0.5, -1.2, 0.4}, Rw[9];
+    bowl(&sheet);
+    for (int p = 0; p < POINTS; p++) {
+        double off = random_between(&seed, -0.05, 0.05);
+        for (int d = 0; d < 2; d++)
+            theta[p][d] =
+                random_between(&seed, sheet.shell.chart.low[d], sheet.shell.chart.high[d]);
+        place_mercator(&R, theta[p], x[p]);
+        for (int d = 0; d < 3; d++) x[p][d] += off * x[p][d] + random_between(&seed, -0.01, 0.01);
+    }
+    ref_foot_skin(&sheet.shell, &sheet.warp, POINTS, CONST2(theta), CONST(x), &skin, &loose);
+    assert_int_equal(loose, 0);
+    for (long n = 0; n < sheet.warp.nodes; n++) {
+        double u[3];
+        sm_cross(w, sheet.warp.X[n], u);
+        memcpy(sheet.steps.u + 3 * n, u, sizeof u);
+    }
+    ref_sheet_pose(&sheet);
+    ref_skin_place(&skin, CONST(sheet.warp.moved), CONST(sheet.warp.turned), now);
+    ref_rotation(w, Rw);
+    double shift[3];
+    for (int d = 0; d < 3; d++)
+        shift[d] =
+            sheet.warp.X[0][d] + sheet.warp.moved[0][d] - sm_dot(Rw + 3 * d, sheet.warp.X[0]);
+    for (int s = 0; s < POINTS; s++)
+        for (int d = 0; d < 3; d++)
+            assert_true(fabs(now[s][d] - sm_dot(Rw + 3 * d, skin.rest[s]) - shift[d]) < 1e-5);
+    for (int s = 0; s < POINTS; s++) assert_true(fabs(skin.lift[s]) < 0.08);
+    ref_skin_free(&skin);
     ref_sheet_free(&sheet);
 }

@@ -1,0 +1,110 @@
+#include "foot.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "../../../lib/vector.h"
+#include "../solve/least_squares.h"
+
+enum { MOST_STEPS = 12 };
+
+typedef struct {
+    const RefShell *shell;
+    const RefWarp *warp;
+    const double (*theta)[2];
+    const double (*x)[3];
+} Feet;
+
+static long cell_of(const void *data, long point)
+{
+    const Feet *feet = data;
+    return ref_quadtree_at(&feet->shell->tree, feet->theta[point]);
+}
+
+static int nearest(const void *data, long point)
+{
+    const Feet *feet = data;
+    int best = 0;
+    double least = INFINITY;
+    for (long n = 0; n < feet->warp->nodes; n++) {
+        double square = 0;
+        for (int d = 0; d < 3; d++) square += pow(feet->warp->X[n][d] - feet->x[point][d], 2);
+        if (square < least) {
+            least = square;
+            best = (int)n;
+        }
+    }
+    return best;
+}
+
+/* Place and normal there, and their slopes: sums of parts 0 to 2 of the functions. */
+static void sum_parts(const Feet *feet, const RefShape *shape, double place[3][3],
+                      double normal[3][3])
+{
+    memset(place, 0, sizeof(double[3][3]));
+    memset(normal, 0, sizeof(double[3][3]));
+    for (int n = 0; n < shape->count; n++) {
+        double part[3] = {shape->value[n], shape->gradient[n][0], shape->gradient[n][1]};
+        for (int k = 0; k < 3; k++)
+            for (int d = 0; d < 3; d++) {
+                place[k][d] += part[k] * feet->warp->X[shape->node[n]][d];
+                normal[k][d] += part[k] * feet->warp->rest_normal[shape->node[n]][d];
+            }
+    }
+}
+
+/* Newton's steps for offsets o along the two parameters and up the normal; false where they do not
+ * meet x within `reach` of the place. */
+static bool find_foot(const double place[3][3], const double normal[3][3], const double x[3],
+                      double reach, double o[3])
+{
+    double far = 0;
+    memset(o, 0, 3 * sizeof *o);
+    for (int step = 0; step < MOST_STEPS; step++) {
+        double slope[3][3], off[3], left[9] = {0}, right[3] = {0};
+        for (int d = 0; d < 3; d++) {
+            for (int k = 0; k < 2; k++) slope[k][d] = place[1 + k][d] + o[2] * normal[1 + k][d];
+            slope[2][d] = normal[0][d] + o[0] * normal[1][d] + o[1] * normal[2][d];
+            off[d] =
+                x[d] - place[0][d] - o[0] * place[1][d] - o[1] * place[2][d] - o[2] * slope[2][d];
+        }
+        for (int d = 0; d < 3; d++) {
+            double row[3] = {slope[0][d], slope[1][d], slope[2][d]};
+            ref_least_squares_add(3, row, off[d], 1, left, right);
+        }
+        ref_least_squares_solve(3, 0, left, right);
+        for (int k = 0; k < 3; k++) o[k] += right[k];
+        far = sqrt(sm_dot(off, off));
+        double side[3];
+        for (int d = 0; d < 3; d++) side[d] = o[0] * place[1][d] + o[1] * place[2][d];
+        if (!(sm_dot(side, side) < reach * reach && fabs(o[2]) < 10 * reach)) return false;
+    }
+    return far < 1e-6 * reach;
+}
+
+static bool weigh(const void *data, long point, RefShape *shape, double *lift)
+{
+    const Feet *feet = data;
+    const double theta[3] = {feet->theta[point][0], feet->theta[point][1]};
+    double place[3][3], normal[3][3], o[3], middle[2], edge[2];
+    if (!ref_mls_at(&feet->shell->nodes, feet->shell->basis, theta, shape)) return false;
+    sum_parts(feet, shape, place, normal);
+    ref_quadtree_cell(&feet->shell->tree, feet->shell->tree.cell + cell_of(data, point), middle,
+                      edge);
+    double area = sqrt(sqrt(sm_dot(place[1], place[1]) * sm_dot(place[2], place[2])));
+    if (!find_foot((const double(*)[3])place, (const double(*)[3])normal, feet->x[point],
+                   area * fmax(edge[0], edge[1]), o))
+        return true;
+    *lift = o[2];
+    for (int n = 0; n < shape->count; n++)
+        shape->value[n] += o[0] * shape->gradient[n][0] + o[1] * shape->gradient[n][1];
+    return true;
+}
+
+void ref_foot_skin(const RefShell *shell, const RefWarp *warp, long count, const double (*theta)[2],
+                   const double (*x)[3], RefSkin *skin, long *loose)
+{
+    Feet feet = {shell, warp, theta, x};
+    RefSkinCarrier carrier = {&feet, &shell->nodes, cell_of, weigh, nearest};
+    ref_skin_build(&carrier, true, count, x, skin, loose);
+}
