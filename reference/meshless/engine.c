@@ -61,7 +61,7 @@ static void meshless_destroy(SmEngine *engine)
                 engine->elastic.held, engine->impulse, engine);
 }
 
-static SmCode check(const SmVoxels *voxels, const SmEngineParams *params, SmError *error)
+SmCode ref_meshless_check(const SmVoxels *voxels, const SmEngineParams *params, SmError *error)
 {
     SmEngineParams rest = *params;
     rest.w = 1;
@@ -156,7 +156,7 @@ static void take_lattice(const SmVoxels *voxels, const RefPoints *given, SmEngin
 static SmCode create(const SmVoxels *voxels, const SmEngineParams *params, bool points,
                      SmEngine **result, SmError *error)
 {
-    SmCode code = check(voxels, params, error);
+    SmCode code = ref_meshless_check(voxels, params, error);
     if (code != SM_OK) return code;
     SmEngine *engine = sm_alloc(1, sizeof *engine);
     engine->points = points;
@@ -418,14 +418,6 @@ static void meshless_masses(SmEngine *engine, double *mass)
     for (long p = 0; p < engine->count; p++) mass[p] = engine->mass;
 }
 
-static size_t skin_bytes(const RefSkin *skin)
-{
-    size_t bytes = 0;
-    for (long b = 0; b < skin->blocks; b++)
-        bytes += (size_t)skin->block[b].nodes * (size_t)skin->block[b].room * sizeof(float);
-    return bytes;
-}
-
 static void meshless_count(SmEngine *engine, SmCounts *counts)
 {
     size_t modes = (size_t)engine->elastic.motion.modes,
@@ -437,7 +429,7 @@ static void meshless_count(SmEngine *engine, SmCounts *counts)
                                     engine->elastic.mode_seconds + engine->elastic.skin_seconds};
     size_t bytes = sizeof *engine + nodes * (6 * modes + 15) * sizeof(double) +
                    (size_t)engine->all * 5 * sizeof(double[3]);
-    counts->bytes = (long)(bytes + skin_bytes(&engine->elastic.skin));
+    counts->bytes = (long)(bytes + ref_skin_bytes(&engine->elastic.skin));
 }
 
 static long meshless_region(SmEngine *engine, long p, long *member, long room)
@@ -447,8 +439,9 @@ static long meshless_region(SmEngine *engine, long p, long *member, long room)
     return 1;
 }
 
-static const SmStages stages = {
-    .of = {[SM_SHAPE_MATCHING] = {"motion", "motion ms", "motion", "the motion of its modes"},
+const SmStages ref_meshless_stages = {
+    .of = {[SM_SHAPE_MATCHING] = {"motion", "motion ms", "motion",
+                                  "the motion of its modes, or of a shell's nodes"},
            [SM_OTHER] = {"skin", "skin ms", "skin", "the points that they carry"}},
     .before = SM_SHAPE_MATCHING};
 
@@ -456,7 +449,7 @@ const SmEngineType ref_meshless_engine = {
     .name = "meshless",
     .precision = "double",
     .unstopped = true,
-    .stages = &stages,
+    .stages = &ref_meshless_stages,
     .create = meshless_create,
     .destroy = meshless_destroy,
     .step = meshless_step,
@@ -580,14 +573,14 @@ static void frames_count(SmEngine *engine, SmCounts *counts)
     size_t bytes =
         (size_t)elastic->motion.nodes * (6 * (size_t)elastic->motion.modes + 12) * sizeof(double) +
         (size_t)elastic->skin.count * 2 * sizeof(double[3]);
-    counts->bytes = (long)(bytes + skin_bytes(&elastic->skin));
+    counts->bytes = (long)(bytes + ref_skin_bytes(&elastic->skin));
 }
 
 const SmEngineType ref_meshless_frames = {
     .name = "meshless",
     .precision = "double",
     .unstopped = true,
-    .stages = &stages,
+    .stages = &ref_meshless_stages,
     .create = frames_create,
     .destroy = meshless_destroy,
     .step = frames_step,

@@ -35,11 +35,12 @@ struct RefMeshlessOptions {
     const SmMesh *mesh;  /* the body's closed surface, read by create() only */
     const RefMpu *given; /* NULL, or the field of points that were given: they are carried, too */
     const RefStored *stored; /* NULL, or the body and its modes (stored.h): none are sought then */
-    long points;  /* on the mesh's surface, of which the field is made without `given`; 0:
-                   * REF_MESHLESS_POINTS, of thin bodies more, to REF_MESHLESS_MOST_POINTS */
-    long nodes;   /* wanted; 0: REF_MESHLESS_NODES */
-    bool uniform; /* octants are all of one size; false: inside they may be twice as large */
-    int modes;    /* 0: REF_MESHLESS_MODES, or half of what there is */
+    long points;      /* on the mesh's surface, of which the field is made without `given`; 0:
+                       * REF_MESHLESS_POINTS, of thin bodies more, to REF_MESHLESS_MOST_POINTS */
+    long nodes;       /* wanted; 0: REF_MESHLESS_NODES */
+    bool uniform;     /* octants are all of one size; false: inside they may be twice as large */
+    int modes;        /* 0: REF_MESHLESS_MODES, or half of what there is */
+    double thickness; /* of a shell (shell_engine.h), mesh units; 0: REF_SHELL_THIN */
     RefMaterial material;     /* mesh units, kg, s */
     double stiffness_damping; /* b of Rayleigh's a + b lambda, s; a loses the share params->damping
                                * of the speed in a step */
@@ -54,6 +55,10 @@ SmCode ref_meshless_field(const RefMeshlessOptions *options, RefMpu *mpu, SmErro
 long ref_meshless_points(const SmEngine *engine, double (*x)[3]);
 
 extern const SmEngineType ref_meshless_engine;
+
+/* What create() asks of bodies and parameters, of shells, too; and the stages of a step. */
+SmCode ref_meshless_check(const SmVoxels *voxels, const SmEngineParams *params, SmError *error);
+extern const SmStages ref_meshless_stages;
 
 /* The same body as Table 1 of Guo and Qin times it. Its particles are the points of the field,
  * carried as they are; a step is one implicit step and all points' new positions. Each handle binds

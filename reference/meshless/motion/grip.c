@@ -38,7 +38,8 @@ static bool spreads(const RefGrip *grip)
 
 RefGrip ref_grip_choose(long count, const double (*x)[3], double apart, int most)
 {
-    RefGrip grip = {.x = sm_alloc((size_t)most, sizeof *grip.x)};
+    RefGrip grip = {.x = sm_alloc((size_t)most, sizeof *grip.x),
+                    .point = sm_alloc((size_t)most, sizeof *grip.point)};
     double *least = sm_alloc((size_t)count, sizeof *least), middle[3] = {0};
     for (long p = 0; p < count; p++)
         for (int d = 0; d < 3; d++) middle[d] += x[p][d] / (double)count;
@@ -50,6 +51,7 @@ RefGrip ref_grip_choose(long count, const double (*x)[3], double apart, int most
         if (grip.count > 0 && least[best] < apart * apart) break;
         if (grip.count == 0)
             for (long p = 0; p < count; p++) least[p] = INFINITY;
+        grip.point[grip.count] = best;
         memcpy(grip.x[grip.count++], x[best], sizeof x[best]);
         for (long p = 0; p < count; p++) least[p] = fmin(least[p], square_between(x[p], x[best]));
     }
@@ -62,7 +64,7 @@ RefGrip ref_grip_choose(long count, const double (*x)[3], double apart, int most
 
 void ref_grip_free(RefGrip *grip)
 {
-    free(grip->x);
+    sm_free_all(grip->x, grip->point);
     *grip = (RefGrip){0};
 }
 

@@ -12,6 +12,7 @@
 typedef struct {
     int count;      /* points bound; below 3, or all on a line: each is bound alone */
     double (*x)[3]; /* [count] at rest */
+    long *point;    /* [count] their numbers among the handle's */
     double middle[3];
     bool rigid; /* whether they say how they are turned */
     int hold;   /* its first constraint: of the middle's displacement, then the rotation; or of each

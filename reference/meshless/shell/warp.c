@@ -44,7 +44,8 @@ static void note_place(const RefFrame *frame, double area, RefWarpPlace *place)
         for (int d = 0; d < 3; d++) up[d] = g[2] * a[!k][d] + g[k] * a[k][d];
         sm_cross(frame->normal, up, place->across[k]);
     }
-    for (int m = 0; m < 3; m++) place->metric[m] = area * frame->area * g[m];
+    place->area = area * frame->area;
+    for (int m = 0; m < 3; m++) place->metric[m] = place->area * g[m];
 }
 
 /* The middles of a cell's quarters, where the shell was integrated, too: covers reach them. */

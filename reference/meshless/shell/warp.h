@@ -21,6 +21,7 @@ enum { REF_WARP_PLACES = REF_FRAME_SLOPES / 2 }; /* of a cell */
 typedef struct {
     double tangent[2][3], normal[3];
     double across[2][3]; /* a3 x a^k */
+    double area;         /* that it stands for */
     double metric[3];    /* area times g^kl */
 } RefWarpPlace;
 

@@ -1,0 +1,305 @@
+/* The engine: a map of the mesh's surface, a shell over it, its motion, and its vertices. */
+#include "shell_engine.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../lib/box.h"
+#include "../../lib/engine/boundary.h"
+#include "../../lib/vector.h"
+#include "motion/grip.h"
+#include "shell/foot.h"
+
+enum { MOST_POINTS = 24, MOST_LOOSE = 4 };
+
+/* The holds that a handle has become. */
+typedef struct {
+    int first, count;
+} Held;
+
+struct SmEngine {
+    long count;
+    double mass;       /* of a particle */
+    double pose[3][4]; /* rest to initial position: a translation */
+    RefShellBody body;
+    long *place; /* [count] where a particle is in the skin */
+    double (*rest)[3];
+    double (*before)[3]; /* [count] in the skin's order, a step ago */
+    SmHandles handles;
+    Held *held; /* [handles.count] */
+};
+
+#define CONST(array) ((const double(*)[3])(array))
+
+static void shell_destroy(SmEngine *engine)
+{
+    if (!engine) return;
+    ref_skin_free(&engine->body.skin);
+    ref_sheet_free(&engine->body.sheet);
+    ref_surface_map_free(&engine->body.map);
+    sm_handles_free(&engine->handles);
+    sm_free_all(engine->body.carried, engine->place, engine->rest, engine->before, engine->held,
+                engine);
+}
+
+static void carry(SmEngine *engine)
+{
+    RefShellBody *body = &engine->body;
+    ref_skin_place(&body->skin, CONST(body->sheet.warp.moved), CONST(body->sheet.warp.turned),
+                   body->carried);
+}
+
+static SmCode make_sheet(const SmEngineParams *params, SmEngine *engine, SmError *error)
+{
+    const RefMeshlessOptions *options = params->meshless;
+    const SmMesh *mesh = options->mesh;
+    SmBox box = sm_box_around(mesh->vertex_count, CONST(mesh->position));
+    RefSheetOptions sheet = {
+        .shell = {.across = 1,
+                  .nodes = options->nodes > 0 ? options->nodes : REF_SHELL_NODES,
+                  .basis = REF_MLS_PLANE_QUADRATIC,
+                  .thickness = options->thickness > 0 ? options->thickness
+                                                      : REF_SHELL_THIN * sm_box_longest(&box),
+                  .material = options->material},
+        .damping = {params->damping / (1 - params->damping) / params->h,
+                    options->stiffness_damping},
+        .h = params->h};
+    memcpy(sheet.gravity, params->gravity, sizeof sheet.gravity);
+    SmCode code = ref_surface_map_create(mesh, "the mesh", &engine->body.map, error);
+    if (code != SM_OK) return code;
+    double start = sm_now();
+    code = ref_sheet_create(&engine->body.map.chart, &sheet, &engine->body.sheet, error);
+    engine->body.matrix_seconds = sm_now() - start;
+    return code;
+}
+
+static void make_particles(const SmMesh *mesh, SmEngine *engine)
+{
+    RefShellBody *body = &engine->body;
+    size_t count = (size_t)mesh->vertex_count;
+    double start = sm_now(), mass = 0;
+    engine->count = mesh->vertex_count;
+    engine->rest = sm_alloc(count, sizeof *engine->rest);
+    engine->before = sm_alloc(count, sizeof *engine->before);
+    engine->place = sm_alloc(count, sizeof *engine->place);
+    body->carried = sm_alloc(count, sizeof *body->carried);
+    memcpy(engine->rest, mesh->position, count * sizeof *engine->rest);
+    ref_foot_skin(&body->sheet.shell, &body->sheet.warp, engine->count,
+                  (const double(*)[2])body->map.theta, CONST(engine->rest), &body->skin,
+                  &body->loose);
+    for (long s = 0; s < engine->count; s++) engine->place[body->skin.order[s]] = s;
+    const RefSparse *M = &body->sheet.shell.matrices.mass;
+    for (int c = 0; c < M->columns; c++)
+        for (int e = M->start[c]; e < M->start[c + 1]; e++)
+            mass += (M->row[e] == c ? 1 : 2) * M->value[e];
+    engine->mass = mass / (double)engine->count;
+    carry(engine);
+    memcpy(engine->before, body->carried, count * sizeof *engine->before);
+    body->skin_seconds = sm_now() - start;
+}
+
+static SmCode shell_create(const SmVoxels *voxels, const SmEngineParams *params, SmEngine **result,
+                           SmError *error)
+{
+    SmCode code = ref_meshless_check(voxels, params, error);
+    if (code != SM_OK) return code;
+    SmEngine *engine = sm_alloc(1, sizeof *engine);
+    sm_engine_pose(params, 0, engine->pose);
+    code = make_sheet(params, engine, error);
+    if (code != SM_OK) {
+        shell_destroy(engine);
+        return code;
+    }
+    make_particles(params->meshless->mesh, engine);
+    *result = engine;
+    return SM_OK;
+}
+
+static void shell_step(SmEngine *engine, SmLaps *laps)
+{
+    RefShellBody *body = &engine->body;
+    ref_sheet_step(&body->sheet);
+    sm_lap(laps, SM_SHAPE_MATCHING);
+    double(*now)[3] = engine->before;
+    engine->before = body->carried;
+    body->carried = now;
+    carry(engine);
+    sm_lap(laps, SM_OTHER);
+}
+
+static void shell_get(SmEngine *engine, SmField field, double (*values)[3])
+{
+    for (long p = 0; p < engine->count; p++) {
+        const double *now = engine->body.carried[engine->place[p]];
+        const double *before = engine->before[engine->place[p]];
+        for (int d = 0; d < 3; d++)
+            values[p][d] = field == SM_VELOCITY
+                               ? (now[d] - before[d]) / engine->body.sheet.options.h
+                           : field == SM_REST ? engine->rest[p][d] + engine->pose[d][3]
+                                              : now[d] + engine->pose[d][3];
+    }
+}
+
+/* Displacements and velocities of the parameters. */
+static long shell_get_state(SmEngine *engine, double *state)
+{
+    const RefSteps *steps = &engine->body.sheet.steps;
+    long size = 3 * engine->body.sheet.warp.nodes;
+    if (state) memcpy(state, steps->u, (size_t)size * sizeof *state);
+    if (state) memcpy(state + size, steps->v, (size_t)size * sizeof *state);
+    return 2 * size;
+}
+
+static void shell_set_state(SmEngine *engine, const double *state)
+{
+    RefSheet *sheet = &engine->body.sheet;
+    long size = 3 * sheet->warp.nodes;
+    for (long n = 0; n < size; n++)
+        sheet->steps.u[n] = state[n] - sheet->options.h * state[size + n];
+    ref_sheet_pose(sheet);
+    carry(engine);
+    memcpy(engine->before, engine->body.carried, (size_t)engine->count * sizeof *engine->before);
+    memcpy(sheet->steps.u, state, (size_t)size * sizeof *state);
+    memcpy(sheet->steps.v, state + size, (size_t)size * sizeof *state);
+    ref_sheet_pose(sheet);
+    carry(engine);
+}
+
+static void shell_push(SmEngine *engine, long count, const long *particle,
+                       const double (*impulse)[3])
+{
+    RefSheet *sheet = &engine->body.sheet;
+    for (long n = 0; n < count; n++) {
+        assert(particle[n] >= 0 && particle[n] < engine->count);
+        ref_skin_push(&engine->body.skin, engine->place[particle[n]], impulse[n], sheet->impulse);
+    }
+    sheet->pushed = sheet->pushed || count > 0;
+}
+
+/* How long cells' edges are on the surface, on average. */
+static double cell_length(const RefSheet *sheet)
+{
+    double area = 0;
+    for (long p = 0; p < REF_WARP_PLACES * sheet->warp.cells; p++)
+        area += sheet->warp.place[p].area;
+    return sqrt(area / (double)sheet->warp.cells);
+}
+
+/* A handle's points, the one nearest to their middle first; whether they are all in a line. */
+static bool choose_points(const SmEngine *engine, const SmHandle *handle, RefSheetGrip *grip)
+{
+    double(*x)[3] = sm_alloc((size_t)handle->count, sizeof *x), least = INFINITY;
+    for (long k = 0; k < handle->count; k++)
+        memcpy(x[k], engine->rest[handle->particle[k]], sizeof x[k]);
+    RefGrip chosen =
+        ref_grip_choose(handle->count, CONST(x), cell_length(&engine->body.sheet), MOST_POINTS);
+    double middle[3] = {0};
+    long nearest = 0;
+    for (long k = 0; k < handle->count; k++)
+        for (int d = 0; d < 3; d++) middle[d] += x[k][d] / (double)handle->count;
+    for (long k = 0; k < handle->count; k++) {
+        double way[3] = {x[k][0] - middle[0], x[k][1] - middle[1], x[k][2] - middle[2]};
+        if (sm_dot(way, way) >= least) continue;
+        least = sm_dot(way, way);
+        nearest = k;
+    }
+    *grip = (RefSheetGrip){.theta = sm_alloc((size_t)chosen.count + 1, sizeof *grip->theta)};
+    for (int c = -1; c < chosen.count; c++) {
+        long point = c < 0 ? nearest : chosen.point[c];
+        if (c >= 0 && point == nearest) continue;
+        memcpy(grip->theta[grip->count++], engine->body.map.theta[handle->particle[point]],
+               sizeof *engine->body.map.theta);
+    }
+    bool line = !chosen.rigid;
+    ref_grip_free(&chosen);
+    free(x);
+    return line;
+}
+
+/* Other holds than before, where the surface is; the motion goes on. */
+static void bind(SmEngine *engine)
+{
+    int count = 0, handles = engine->handles.count;
+    RefSheetGrip *grip = sm_alloc((size_t)(handles * MOST_LOOSE), sizeof *grip);
+    engine->held = sm_realloc(engine->held, (size_t)handles, sizeof *engine->held);
+    for (int n = 0; n < handles; n++) {
+        Held *held = engine->held + n;
+        *held = (Held){count, 0};
+        RefSheetGrip all;
+        if (engine->handles.handle[n].count == 0) continue;
+        bool line = choose_points(engine, engine->handles.handle + n, &all);
+        held->count = !line ? 1 : all.count < MOST_LOOSE ? all.count : MOST_LOOSE;
+        for (int k = 0; line && k < held->count; k++) {
+            grip[count + k] = (RefSheetGrip){
+                .count = 1, .theta = sm_alloc(1, sizeof *grip->theta), .loose = true};
+            memcpy(grip[count + k].theta, all.theta[k], sizeof *all.theta);
+        }
+        if (line)
+            free(all.theta);
+        else
+            grip[count] = all;
+        count += held->count;
+    }
+    if (ref_sheet_hold(&engine->body.sheet, count, grip, NULL) != SM_OK)
+        for (int n = 0; n < handles; n++) engine->held[n].count = 0;
+    for (int k = 0; k < count; k++) free(grip[k].theta);
+    free(grip);
+}
+
+static void shell_bound(SmEngine *engine, const SmBoundary *boundary)
+{
+    if (sm_handles_set(&engine->handles, boundary, engine->count)) bind(engine);
+    for (int n = 0; n < engine->handles.count; n++) {
+        double pose[3][4];
+        memcpy(pose, engine->handles.handle[n].pose, sizeof pose);
+        for (int d = 0; d < 3; d++) {
+            pose[d][3] -= engine->pose[d][3];
+            for (int e = 0; e < 3; e++) pose[d][3] += pose[d][e] * engine->pose[e][3];
+        }
+        for (int k = 0; k < engine->held[n].count; k++)
+            ref_sheet_aim(&engine->body.sheet, engine->held[n].first + k, (const double(*)[4])pose);
+    }
+}
+
+static void shell_masses(SmEngine *engine, double *mass)
+{
+    for (long p = 0; p < engine->count; p++) mass[p] = engine->mass;
+}
+
+static void shell_count(SmEngine *engine, SmCounts *counts)
+{
+    const RefShellBody *body = &engine->body;
+    const RefWarp *warp = &body->sheet.warp;
+    *counts = (SmCounts){
+        .particles = engine->count,
+        .regions = warp->nodes,
+        .build_seconds = body->map.seconds + body->matrix_seconds + body->skin_seconds,
+        .bytes = (long)(sizeof *engine + (size_t)warp->start[warp->cells] * sizeof *warp->slope +
+                        (size_t)warp->near[warp->nodes] * sizeof *warp->lean +
+                        (size_t)engine->count * 3 * sizeof *body->carried)};
+    counts->bytes += (long)ref_skin_bytes(&body->skin);
+}
+
+RefShellBody *ref_shell_body(SmEngine *engine)
+{
+    return &engine->body;
+}
+
+const SmEngineType ref_shell_engine = {
+    .name = "shell",
+    .precision = "double",
+    .unstopped = true,
+    .stages = &ref_meshless_stages,
+    .create = shell_create,
+    .destroy = shell_destroy,
+    .step = shell_step,
+    .get = shell_get,
+    .push = shell_push,
+    .bound = shell_bound,
+    .get_state = shell_get_state,
+    .set_state = shell_set_state,
+    .masses = shell_masses,
+    .count = shell_count,
+};

@@ -1,0 +1,39 @@
+/* shell_engine.h - meshless thin shells (Guo and Qin 2009, sections 4.2 and 5.2) behind
+ * lib/engine/engine.h.
+ *
+ * The body is its surface: a closed one, one with rims, or a plate. It is mapped to a rectangle of
+ * conformal parameters (map/surface_map.h), which says what surfaces can be; nodes are put there,
+ * and what is simulated moves as sheet.h says. Its particles are the mesh's vertices, carried; the
+ * lattice plays no part; w, summation, polar and layout mean nothing. create() refuses what the
+ * meshless engine refuses. Its state is get_state()'s, and set() is NULL.
+ *
+ * A handle holds the surface at some of its particles, apart from each other by a cell at least,
+ * and turns its tangents in their middle; one whose particles are all in a line holds places alone.
+ */
+#ifndef REF_SHELL_ENGINE_H
+#define REF_SHELL_ENGINE_H
+
+#include "engine.h"
+#include "map/surface_map.h"
+#include "shell/sheet.h"
+
+/* Thickness where none is given: this share of the mesh's longest extent. */
+#define REF_SHELL_THIN 0.01
+
+enum { REF_SHELL_NODES = 450 };
+
+extern const SmEngineType ref_shell_engine;
+
+/* What an engine is made of, for checks of it, and the seconds of its making. */
+typedef struct {
+    RefSurfaceMap map;
+    RefSheet sheet;
+    RefSkin skin;
+    double (*carried)[3]; /* [skin.count] the points now, in the skin's order */
+    long loose;           /* points that too few nodes cover */
+    double matrix_seconds, skin_seconds;
+} RefShellBody;
+
+RefShellBody *ref_shell_body(SmEngine *engine);
+
+#endif
