@@ -3,10 +3,12 @@
 #include "../octree/engine.h"
 #include "../reference/brute.h"
 #include "../reference/meshless/engine.h"
+#include "../reference/meshless/shell_engine.h"
 #include "check/check.h"
 #include "engines.h"
 #include "measure/checker.h"
 #include "measure/elastic_checker.h"
+#include "measure/shell_checker.h"
 #include "measure/tree_row.h"
 #include "play/body_group.h"
 #include "scene/body.h"
@@ -57,6 +59,19 @@ const BenchEngine bench_brute = {.type = {&ref_brute_engine},
                                  .twin = &bench_lattice_twin,
                                  .checker = &bench_matching_checker,
                                  .memory = bench_memory_brute};
+
+const BenchEngine bench_shell = {.type = {&ref_shell_engine},
+                                 .own = BENCH_OF_SHELL,
+                                 .whose = "a shell's",
+                                 .reference = true,
+                                 .nodes = meshless_nodes,
+                                 .adapt = bench_scene_hold,
+                                 .carrier = &bench_lattice_carrier,
+                                 .describe = bench_shell_row_describe,
+                                 .checker = &bench_shell_checker,
+                                 .fill = bench_shell_row_fill,
+                                 .explain = bench_shell_row_explain,
+                                 .memory = bench_memory_lattice};
 
 const BenchEngine bench_meshless = {.type = {&ref_meshless_engine},
                                     .own = BENCH_OF_ELASTIC,

@@ -39,6 +39,7 @@ static const struct {
 void bench_elastic_note(BenchElasticFound *found, BenchElasticCheck check, double value)
 {
     double *most = &found->found[check];
+    found->looked |= 1u << check;
     if (!(value <= *most)) *most = isnan(*most) ? NAN : value;
     if (!isfinite(*most)) *most = NAN;
 }
@@ -61,7 +62,9 @@ void bench_elastic_text(const BenchElasticFound *found, size_t size, char *text)
 {
     text[0] = '\0';
     for (int c = 0; c < BENCH_ELASTIC_CHECKS; c++)
-        sm_append(text, size, "%s%s %.1e", c ? ", " : "off by: ", checks[c].name, found->found[c]);
+        if (found->looked >> c & 1)
+            sm_append(text, size, "%s%s %.1e", *text ? ", " : "off by: ", checks[c].name,
+                      found->found[c]);
 }
 
 /* ---- the body */

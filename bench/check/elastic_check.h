@@ -35,6 +35,7 @@ typedef enum {
 
 typedef struct {
     double found[BENCH_ELASTIC_CHECKS]; /* NaN: not finite */
+    unsigned looked;                    /* bits: at which of them was looked */
 } BenchElasticFound;
 
 /* Notes a finding if it is larger than the one there; what is not finite is NaN, and stays. */

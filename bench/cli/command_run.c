@@ -56,8 +56,10 @@ static const BenchSetting settings[] = {
                   "(default: edges)"),
      BENCH_IN(Options, width), BENCH_CHOICES(bench_widths)},
     {BENCH_IN(Options, chosen), .table = bench_override_settings, .who = BENCH_BY_RUN},
-    {BENCH_OPTION("nodes", "N", 1, "Octree, meshless: wanted simulation nodes (meshless: 1000)"),
-     BENCH_IN(Options, nodes), 1, 1e9, .of = BENCH_OF_SAMPLED | BENCH_OF_ELASTIC},
+    {BENCH_OPTION("nodes", "N", 1,
+                  "Octree, meshless, shell: wanted simulation nodes (meshless: "
+                  "1000, shell: 450)"),
+     BENCH_IN(Options, nodes), 1, 1e9, .of = BENCH_OF_SAMPLED | BENCH_OF_ELASTIC | BENCH_OF_SHELL},
     {.section = 2, .help = "What is written:"},
     {BENCH_OUTPUT_OPTION("FILE.vtkhdf", 2, "Trajectory (default: SCENE.vtkhdf in this folder)"),
      BENCH_IN(Options, output)},
@@ -112,6 +114,12 @@ static const char help[] =
     "force in the last state; beyond the tolerance of 'tables' the run is INVALID (exit code 1), "
     "its trajectory kept.\n" BENCH_EXIT_CODES;
 
+/* Which engine's the setting is first of all. */
+static unsigned first_of(const BenchSetting *setting)
+{
+    return setting->of & -setting->of;
+}
+
 /* Adds the names of a table's options that are first of all this owner's, and that the engine has
  * not. */
 static void name_options(const BenchSetting *table, unsigned owner, unsigned engine,
@@ -120,7 +128,7 @@ static void name_options(const BenchSetting *table, unsigned owner, unsigned eng
     for (; !bench_setting_ends(table); table++) {
         if (table->table && table->kind != BENCH_SET_LIST)
             name_options(table->table, owner, engine, names);
-        bool first = (table->of & -table->of) == owner;
+        bool first = first_of(table) == owner;
         if (table->option && first && !(table->of & engine))
             names->name[names->count++] = table->option;
     }
@@ -144,7 +152,8 @@ static SmCode check_owners(const Options *options, const BenchEngine *engine, Sm
         unsigned others = (*owner)->own & ~engine->own;
         bool missed = others && options->nodes && !engine->nodes;
         for (int i = 0; i < given->count && others; i++)
-            missed |= given->item[i].setting->of == others;
+            missed |= first_of(given->item[i].setting) == (*owner)->own &&
+                      !(given->item[i].setting->of & engine->own);
         if (missed) return fail_of_owner(*owner, engine->own, error);
     }
     if (!engine->twin && options->record)
@@ -221,13 +230,14 @@ static SmCode outline_points(const char *path, RefPoints *points, RefMpu *given,
     return code ? sm_fail(error, code, "%s: %s", path, why.text) : SM_OK;
 }
 
-/* A mesh, or for the meshless engine points. */
+/* A mesh, or for meshless bodies points. */
 static SmCode load_body(const Options *options, const BenchEngine *engine, RefMpu *given,
                         SmMesh *mesh, SmError *error)
 {
     const char *name = options->scene;
     RefPoints points;
-    if (!(engine->own & BENCH_OF_ELASTIC)) return bench_mesh_load(name, mesh, error);
+    if (!(engine->own & (BENCH_OF_ELASTIC | BENCH_OF_SHELL)))
+        return bench_mesh_load(name, mesh, error);
     SmCode code = bench_points_or_mesh(name, &points, mesh, error);
     if (code || !points.count) return code;
     if (bench_given(&options->chosen.given, "points")) {

@@ -23,7 +23,7 @@ void bench_elastic_row_fill(const BenchRunner *runner, BenchRow *row)
                                      .skin_seconds = elastic->skin_seconds};
 }
 
-static SmCode takes(const BenchScene *scene, SmError *error)
+SmCode bench_elastic_takes(const BenchScene *scene, SmError *error)
 {
     bool deformed = scene->bend != 0 || scene->twist != 0 || scene->squash != 0 || scene->kick != 0;
     const struct {
@@ -65,7 +65,7 @@ static SmCode accepts(const BenchPlayback *play, SmError *error)
     return SM_OK;
 }
 
-static void note(const BenchElasticFound *found, BenchRow *row)
+void bench_elastic_row_note(const BenchElasticFound *found, BenchRow *row)
 {
     char reason[sizeof row->reason];
     memcpy(row->elastic.found, found->found, sizeof found->found);
@@ -78,18 +78,18 @@ static void rest(void *check, BenchPlayback *play, void *worst, BenchRow *row)
 {
     (void)check;
     bench_elastic_check_body(ref_meshless_elastic(runner_of(play)->engine), worst);
-    note(worst, row);
+    bench_elastic_row_note(worst, row);
 }
 
 static void state(void *check, BenchPlayback *play, void *worst, BenchRow *row)
 {
     (void)check;
     bench_elastic_check_state(runner_of(play), worst);
-    note(worst, row);
+    bench_elastic_row_note(worst, row);
 }
 
 const BenchChecker bench_elastic_checker = {.size = sizeof(BenchElasticFound),
-                                            .takes = takes,
+                                            .takes = bench_elastic_takes,
                                             .accepts = accepts,
                                             .rest = rest,
                                             .state = state};

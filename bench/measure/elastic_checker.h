@@ -14,6 +14,12 @@ void bench_elastic_row_fill(const BenchRunner *runner, BenchRow *row);
  * eye, several instances, an initial deformation, and handles that bind the same point. */
 extern const BenchChecker bench_elastic_checker;
 
+/* Its `takes`, of shells, too. */
+SmCode bench_elastic_takes(const BenchScene *scene, SmError *error);
+
+/* Notes in the row what was found, and makes it invalid where that is too much. */
+void bench_elastic_row_note(const BenchElasticFound *found, BenchRow *row);
+
 /* Whether the row is a meshless body's. */
 bool bench_row_of_elastic(const BenchRow *row);
 

@@ -244,6 +244,11 @@ static bool stops(const BenchEngine *engine)
     return engine->type[0]->bound && !engine->type[0]->unstopped;
 }
 
+static bool is_set(const BenchEngine *engine)
+{
+    return engine->type[0]->set;
+}
+
 static bool is_held(const BenchEngine *engine)
 {
     return engine->type[0]->bound;
@@ -257,6 +262,7 @@ static bool is_pushed(const BenchEngine *engine)
 /* Refuses what the engine does not do, and names those that do. */
 static SmCode check_engine(const BenchScene *scene, const SmEngineType *type, SmError *error)
 {
+    bool deformed = scene->bend != 0 || scene->twist != 0 || scene->squash != 0 || scene->kick != 0;
     const struct {
         bool wanted, (*does)(const BenchEngine *engine);
         const char *what;
@@ -264,6 +270,7 @@ static SmCode check_engine(const BenchScene *scene, const SmEngineType *type, Sm
         {scene->octree.creep > 0, flows, "plastic bodies ('creep')"},
         {scene->touch_count > 0 || scene->view.level > 0, refines, "'touches' and 'view'"},
         {scene->cut_count > 0, cuts, "'cuts'"},
+        {deformed, is_set, "'bend', 'twist', 'squash' and 'kick'"},
         {scene->handle_count > 0, is_held, "'handles'"},
         {scene->force_count > 0, is_pushed, "'forces'"},
         {scene->obstacle_count > 0, stops, "planes, spheres, boxes and capsules"},

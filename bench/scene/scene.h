@@ -80,7 +80,7 @@ typedef struct BenchScene {
     double density;               /* kg/m^3; 0: unit masses */
     char vertex_mass[BENCH_PATH]; /* text file, a mass for every vertex; nearest vertex wins */
     OctOptions octree;            /* octree only */
-    RefMeshlessOptions meshless;  /* meshless only; in metres, its mesh filled by the runner */
+    RefMeshlessOptions meshless;  /* meshless and shell; in metres, mesh filled by the runner */
     double metre;                 /* mesh units that the meshless body's material takes for one */
     long instances;
     double spacing; /* between instances, in widths of the body */
@@ -108,7 +108,8 @@ extern const char *const bench_goal_forms[];
 
 /* Who takes an option of the settings, and which engines alone. */
 enum { BENCH_BY_RUN = 1, BENCH_BY_TABLES = 2 };
-enum { BENCH_OF_SAMPLED = 1, BENCH_OF_ELASTIC = 2 }; /* `own` of a BenchEngine */
+/* `own` of a BenchEngine */
+enum { BENCH_OF_SAMPLED = 1, BENCH_OF_ELASTIC = 2, BENCH_OF_SHELL = 4 };
 
 /* What a file says, before the four kinds of obstacle become one array. */
 typedef struct {

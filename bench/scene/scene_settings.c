@@ -163,6 +163,9 @@ static const BenchSetting collide_table[] = {
 #define RUN(name, value, words)      BENCH_OPTION(name, value, 1, words), .who = BENCH_BY_RUN
 #define OCTREE(name, value, words)   RUN(name, value, "Octree: " words), .of = BENCH_OF_SAMPLED
 #define MESHLESS(name, value, words) RUN(name, value, "Meshless: " words), .of = BENCH_OF_ELASTIC
+#define SHELL(name, value, words)    RUN(name, value, "Shell: " words), .of = BENCH_OF_SHELL
+#define BOTH(name, value, words)                                                                   \
+    RUN(name, value, "Meshless, shell: " words), .of = BENCH_OF_ELASTIC | BENCH_OF_SHELL
 
 static const BenchSetting octree_table[] = {
     {"levels", BENCH_IN(OctOptions, sampling.levels), 1, OCT_MAX_LEVELS,
@@ -210,21 +213,23 @@ static const BenchSetting octree_table[] = {
 
 static const BenchSetting meshless_table[] = {
     {"young", BENCH_IN(BenchScene, meshless.material.young), 1e-30, 1e30,
-     MESHLESS("young", "E", "Young's modulus, Pa (default: 1e5)")},
+     BOTH("young", "E", "Young's modulus, Pa (default: 1e5)")},
     {"poisson", BENCH_IN(BenchScene, meshless.material.poisson), -0.99, 0.49,
-     MESHLESS("poisson", "NU", "Poisson's ratio, above -1 to 0.49 (default: 0.3)")},
+     BOTH("poisson", "NU", "Poisson's ratio, above -1 to 0.49 (default: 0.3)")},
     {"density", BENCH_IN(BenchScene, meshless.material.density), 1e-30, 1e30,
-     MESHLESS("density", "RHO", "kg/m^3 (default: 1000)")},
+     BOTH("density", "RHO", "kg/m^3 (default: 1000)")},
     {"modes", BENCH_IN(BenchScene, meshless.modes), 7, 1000,
      MESHLESS("modes", "N", "natural modes, 7 to 1000 (default: 64)")},
     {"points", BENCH_IN(BenchScene, meshless.points), REF_LEAST_POINTS, REF_MOST_POINTS,
      MESHLESS("points", "N",
               "points on the mesh, of which its field is made and which `tables` carries (default: "
               "12000, of thin bodies up to 400000)")},
+    {"thickness", BENCH_IN(BenchScene, meshless.thickness), 0, FAR,
+     SHELL("thickness", "T", "in the mesh's units (default: a hundredth of its longest extent)")},
     {"stiffness_damping", BENCH_IN(BenchScene, meshless.stiffness_damping), 0, 1e6,
      SAYS("Rayleigh's b, s: a mode of angular frequency f has the loss factor b f")},
     {"nodes", BENCH_IN(BenchScene, meshless.nodes), 8, 1e6,
-     SAYS("Wanted simulation nodes, met as well as octants can; not given: 1000")},
+     SAYS("Wanted simulation nodes, met as well as octants can; not given: 1000, of a shell 450")},
     {"uniform", BENCH_IN(BenchScene, meshless.uniform),
      SAYS("Octants are all of one size; or those inside may be twice as large")},
     RANGED(BenchScene, metre, 1e-30, 1e30, "Mesh units in a metre"),
@@ -280,7 +285,7 @@ const BenchSetting bench_scene_settings[] = {
      SAYS("The octree's own settings. Finest cells are those that particles, cell or cells ask "
           "for")},
     {"meshless", .kind = BENCH_SET_GROUP, .table = meshless_table,
-     SAYS("The meshless engine's own")},
+     SAYS("Settings of the engines meshless and shell")},
     {"collide", BENCH_IN(BenchScene, params.collide), .table = collide_table,
      SAYS("Collisions beside those with obstacles")},
     LENGTH(BenchScene, density,

@@ -57,7 +57,7 @@ typedef struct {
     long instances;                      /* bodies that share the lattice; 0 means 1 */
     const double (*instance_pose)[3][4]; /* [instances] rest to initial position, or NULL */
     const OctOptions *octree;            /* of the octree only; NULL: its defaults */
-    const RefMeshlessOptions *meshless;  /* of the meshless engine only, which needs it */
+    const RefMeshlessOptions *meshless;  /* of meshless bodies and shells, which need it */
     SmCollideParams collide;
 } SmEngineParams;
 
@@ -112,6 +112,7 @@ typedef struct {
     bool by_cells;         /* params.w is the half-width of its regions, to SM_MOST_W */
     bool unstopped;        /* obstacles do not stop its bodies: callers refuse them */
     bool refines;          /* particles are split, merged and cut while it runs (octree/engine.h) */
+    bool vertices;         /* its particles are the mesh's vertices, on the body's surface */
     bool weighs_regions;   /* a region's misfit counts by its own particle's mass, not by 1 */
     const SmStages *stages; /* NULL: those of shape matching (stage.h) */
 

@@ -27,7 +27,7 @@ void sm_skin_create(const SmEngineType *type, SmEngine *engine, const SmVoxels *
         const OctStructure *s = oct_engine_structure(engine);
         OctCarrier carrier = {voxels, &s->tree, &s->graph, NULL};
         oct_surface_build(&skin->surface, &carrier, &skin->carried);
-    } else {
+    } else if (!type->vertices) {
         sm_embed_create(&skin->surface, voxels, &skin->embedding);
     }
 }
@@ -204,6 +204,7 @@ static void update(SmSkin *skin, long count, const int *node, long first)
 int sm_skin_carrier(const SmSkin *skin, long vertex)
 {
     if (skin->octree) return skin->carried.rows.item[skin->carried.rows.first[vertex]];
+    if (skin->type->vertices) return (int)vertex;
     const float *weight = skin->embedding.weight[vertex];
     int most = 0;
     for (int i = 1; i < 8; i++)
@@ -260,6 +261,21 @@ void sm_skin_follow_cut(SmSkin *skin, long first)
 
 /* ---- reading */
 
+/* The surface's own vertices, and unit normals unless NULL. */
+static void take_vertices(const SmSkin *skin, const double (*node)[3], double (*point)[3],
+                          double (*normal)[3])
+{
+    size_t vertices = (size_t)skin->surface.vertex_count;
+    memcpy(point, node, vertices * sizeof *point);
+    if (!normal) return;
+    SmMesh now = skin->surface;
+    now.position = point;
+    double(*sums)[3] = sm_mesh_normals(&now, 1);
+    memcpy(normal, sums, vertices * sizeof *normal);
+    for (size_t v = 0; v < vertices; v++) sm_normalize(normal[v]);
+    free(sums);
+}
+
 void sm_skin_points(SmSkin *skin, const double (*node)[3], double (*point)[3], double (*normal)[3])
 {
     long count = get_nodes(skin) / skin->instances, vertices = skin->surface.vertex_count;
@@ -268,6 +284,8 @@ void sm_skin_points(SmSkin *skin, const double (*node)[3], double (*point)[3], d
         if (skin->octree) {
             place_leaves(skin, node, count);
             oct_surface_move(&skin->carried, (const double(*)[3])skin->x, point, normal);
+        } else if (skin->type->vertices) {
+            take_vertices(skin, node, point, normal);
         } else {
             sm_embed_apply(&skin->embedding, node, point, normal);
         }

@@ -19,7 +19,7 @@ typedef struct {
     bool octree;           /* nodes carry it, not particles */
     SmMesh surface;        /* of one body at rest, with all cuts; without vertices: none */
     OctSurface carried;    /* what carries it: an octree's nodes, */
-    SmEmbedding embedding; /* or a lattice's particles */
+    SmEmbedding embedding; /* or a lattice's particles; none where particles are its vertices */
     SmCut cut;             /* of a lattice; an octree's structure has its own */
     SmSites sites;         /* of a lattice that can be cut */
     bool incomplete;       /* a cut did not split the surface: it could not be done cleanly */

@@ -18,6 +18,9 @@ void sm_sculpt_flower(SmImplicit *solid);
 void sm_sculpt_balljoint(SmImplicit *solid);
 void sm_sculpt_rabbit(SmImplicit *solid);
 void sm_sculpt_santa(SmImplicit *solid);
+void sm_sculpt_rockerarm(SmImplicit *solid);
+void sm_sculpt_gargoyle(SmImplicit *solid);
+void sm_sculpt_bust(SmImplicit *solid);
 
 typedef struct {
     double x, y, z;

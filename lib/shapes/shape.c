@@ -20,7 +20,7 @@ typedef struct {
     double length;
 } Recipe;
 
-enum { SHAPES = 12 };
+enum { SHAPES = 16 };
 
 static const SmShape shapes[SHAPES] = {
     {"penguin", "cartoon penguin, 1 m tall (FastLSM's penguin)", 9874},
@@ -33,6 +33,10 @@ static const SmShape shapes[SHAPES] = {
      40000},
     {"rabbit", "rabbit that sits, 0.3 m tall (for the meshless paper's rabbit)", 20000},
     {"santa", "santa with a sack, 0.3 m tall (for the meshless paper's santa)", 26000},
+    {"rockerarm", "lever with a bore, 0.2 m long (for the meshless paper's rocker arm)", 80000},
+    {"gargoyle", "gargoyle on a block, 0.3 m tall (for the meshless paper's gargoyle)", 80000},
+    {"bunny", "the rabbit of more triangles (for the meshless paper's bunny)", 100000},
+    {"bust", "bust of a woman, 0.3 m tall (for the meshless paper's Iphigenie)", 400434},
     {"block", "cube, 0.2 m", 768},
     {"beam", "beam, 0.8 m x 0.1 m x 0.1 m along x", 1088},
     {"bar", "bar, 0.56 m x 0.12 m x 0.12 m along x (for the meshless paper's beam)", 1488},
@@ -43,7 +47,9 @@ static const Recipe recipes[SHAPES] = {
     {sm_sculpt_infant, 0.0085, {0}, 0, 1, 0.6},    {sm_sculpt_hand, 0.0028, {0}, 0, 1, 0.19},
     {sm_sculpt_liver, 0.0060, {0}, 0, 0, 0.22},    {sm_sculpt_flower, 0.0034, {0}, 0, 1, 0.4},
     {sm_sculpt_balljoint, 0.0018, {0}, 0, 1, 0.2}, {sm_sculpt_rabbit, 0.0030, {0}, 0, 1, 0.3},
-    {sm_sculpt_santa, 0.0026, {0}, 0, 1, 0.3},     {NULL, 0, {8, 8, 8}, 0.025, 1, 0.2},
+    {sm_sculpt_santa, 0.0026, {0}, 0, 1, 0.3},     {sm_sculpt_rockerarm, 0.00085, {0}, 0, 0, 0.2},
+    {sm_sculpt_gargoyle, 0.0016, {0}, 0, 1, 0.3},  {sm_sculpt_rabbit, 0.00134, {0}, 0, 1, 0.3},
+    {sm_sculpt_bust, 0.00082, {0}, 0, 1, 0.3},     {NULL, 0, {8, 8, 8}, 0.025, 1, 0.2},
     {NULL, 0, {32, 4, 4}, 0.025, 0, 0.8},          {NULL, 0, {28, 6, 6}, 0.02, 0, 0.56},
 };
 
@@ -117,10 +123,11 @@ SmCode sm_shape_mesh(const char *name, SmMesh *mesh, SmError *error)
     const SmShape *shape = sm_shape_find(name);
     memset(mesh, 0, sizeof *mesh);
     if (!shape)
-        return sm_fail(error, SM_USAGE,
-                       "%s: no such shape; there are penguin, statue, infant, hand, liver, flower, "
-                       "balljoint, rabbit, santa, block, beam and bar",
-                       name);
+        return sm_fail(
+            error, SM_USAGE,
+            "%s: no such shape; there are penguin, statue, infant, hand, liver, flower, "
+            "balljoint, rabbit, santa, rockerarm, gargoyle, bunny, bust, block, beam and bar",
+            name);
     const Recipe *recipe = &recipes[shape - shapes];
     if (recipe->sculpt)
         make_sculpture(recipe, shape->triangles, mesh);

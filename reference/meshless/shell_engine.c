@@ -291,6 +291,7 @@ const SmEngineType ref_shell_engine = {
     .name = "shell",
     .precision = "double",
     .unstopped = true,
+    .vertices = true,
     .stages = &ref_meshless_stages,
     .create = shell_create,
     .destroy = shell_destroy,

@@ -38,7 +38,7 @@ static int nearest(const void *data, long point)
 }
 
 /* Place and normal there, and their slopes: sums of parts 0 to 2 of the functions. */
-static void sum_parts(const Feet *feet, const RefShape *shape, double place[3][3],
+static void sum_parts(const RefWarp *warp, const RefShape *shape, double place[3][3],
                       double normal[3][3])
 {
     memset(place, 0, sizeof(double[3][3]));
@@ -47,8 +47,8 @@ static void sum_parts(const Feet *feet, const RefShape *shape, double place[3][3
         double part[3] = {shape->value[n], shape->gradient[n][0], shape->gradient[n][1]};
         for (int k = 0; k < 3; k++)
             for (int d = 0; d < 3; d++) {
-                place[k][d] += part[k] * feet->warp->X[shape->node[n]][d];
-                normal[k][d] += part[k] * feet->warp->rest_normal[shape->node[n]][d];
+                place[k][d] += part[k] * warp->X[shape->node[n]][d];
+                normal[k][d] += part[k] * warp->rest_normal[shape->node[n]][d];
             }
     }
 }
@@ -82,23 +82,30 @@ static bool find_foot(const double place[3][3], const double normal[3][3], const
     return far < 1e-6 * reach;
 }
 
-static bool weigh(const void *data, long point, RefShape *shape, double *lift)
+bool ref_foot_at(const RefShell *shell, const RefWarp *warp, const double theta[2],
+                 const double x[3], RefShape *shape, double *lift)
 {
-    const Feet *feet = data;
-    const double theta[3] = {feet->theta[point][0], feet->theta[point][1]};
+    const RefQuadtree *tree = &shell->tree;
+    const double at[3] = {theta[0], theta[1]};
     double place[3][3], normal[3][3], o[3], middle[2], edge[2];
-    if (!ref_mls_at(&feet->shell->nodes, feet->shell->basis, theta, shape)) return false;
-    sum_parts(feet, shape, place, normal);
-    ref_quadtree_cell(&feet->shell->tree, feet->shell->tree.cell + cell_of(data, point), middle,
-                      edge);
-    double area = sqrt(sqrt(sm_dot(place[1], place[1]) * sm_dot(place[2], place[2])));
-    if (!find_foot((const double(*)[3])place, (const double(*)[3])normal, feet->x[point],
-                   area * fmax(edge[0], edge[1]), o))
+    *lift = 0;
+    if (!ref_mls_at(&shell->nodes, shell->basis, at, shape)) return false;
+    sum_parts(warp, shape, place, normal);
+    ref_quadtree_cell(tree, tree->cell + ref_quadtree_at(tree, theta), middle, edge);
+    double length = sqrt(sqrt(sm_dot(place[1], place[1]) * sm_dot(place[2], place[2])));
+    if (!find_foot((const double(*)[3])place, (const double(*)[3])normal, x,
+                   length * fmax(edge[0], edge[1]), o))
         return true;
     *lift = o[2];
     for (int n = 0; n < shape->count; n++)
         shape->value[n] += o[0] * shape->gradient[n][0] + o[1] * shape->gradient[n][1];
     return true;
+}
+
+static bool weigh(const void *data, long point, RefShape *shape, double *lift)
+{
+    const Feet *feet = data;
+    return ref_foot_at(feet->shell, feet->warp, feet->theta[point], feet->x[point], shape, lift);
 }
 
 void ref_foot_skin(const RefShell *shell, const RefWarp *warp, long count, const double (*theta)[2],

@@ -14,4 +14,10 @@
 void ref_foot_skin(const RefShell *shell, const RefWarp *warp, long count, const double (*theta)[2],
                    const double (*x)[3], RefSkin *skin, long *loose);
 
+/* Where the functions of the foot of x at rest were taken, which move it: their values are in
+ * `shape`, and how far x is off along the normal in `lift`. False, and nothing, where functions are
+ * not defined. */
+bool ref_foot_at(const RefShell *shell, const RefWarp *warp, const double theta[2],
+                 const double x[3], RefShape *shape, double *lift);
+
 #endif

@@ -1,0 +1,65 @@
+#include "shell_checker.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "../check/shell_check.h"
+#include "elastic_checker.h"
+
+void bench_shell_row_fill(const BenchRunner *runner, BenchRow *row)
+{
+    const RefShellBody *body = ref_shell_body(runner->engine);
+    row->cell = NAN;
+    row->epsilon = 0;
+    row->goal_error = row->momentum_error = row->goal_tolerance = NAN;
+    row->voxelise_seconds = 0;
+    row->elastic = (BenchElasticRow){.nodes = body->sheet.warp.nodes,
+                                     .last_nodes = body->sheet.warp.nodes,
+                                     .map_seconds = body->map.seconds,
+                                     .angle = body->map.angle_median,
+                                     .matrix_seconds = body->matrix_seconds,
+                                     .skin_seconds = body->skin_seconds};
+}
+
+static void rest(void *check, BenchPlayback *play, void *worst, BenchRow *row)
+{
+    (void)check;
+    bench_shell_check_body(ref_shell_body(play->group[0].runner.engine), worst);
+    bench_elastic_row_note(worst, row);
+}
+
+static void state(void *check, BenchPlayback *play, void *worst, BenchRow *row)
+{
+    (void)check;
+    bench_shell_check_state(&play->group[0].runner, worst);
+    bench_elastic_row_note(worst, row);
+}
+
+const BenchChecker bench_shell_checker = {
+    .size = sizeof(BenchElasticFound), .takes = bench_elastic_takes, .rest = rest, .state = state};
+
+void bench_shell_row_describe(const BenchRunner *runner, const SmCounts *counts)
+{
+    const RefShellBody *body = ref_shell_body(runner->engine);
+    const RefShellOptions *options = &body->sheet.options.shell;
+    const RefMaterial *material = &runner->scene->meshless.material;
+    printf(
+        "%s: shell, %s precision: %ld points carried by %ld nodes of a %s, %.3g thick; angles of "
+        "its map off by %.2g degrees (median); Young's modulus %g, Poisson's ratio %g, density "
+        "%g, %.4g mesh units in a metre; built in %.3g s\n",
+        runner->scene->name, runner->type->precision, counts->particles, counts->regions,
+        ref_map_kind_name(body->map.kind), options->thickness, body->map.angle_median,
+        material->young, material->poisson, material->density, runner->scene->metre,
+        counts->build_seconds);
+}
+
+void bench_shell_row_explain(FILE *file, const BenchRow *row)
+{
+    const BenchElasticRow *e = &row->elastic;
+    fprintf(
+        file,
+        "    parameters in %.3g s, angles off by %.2g degrees (median); matrices of %ld nodes in "
+        "%.3g s, the points' shape functions in %.3g s; %.3g MB a frame\n",
+        e->map_seconds, e->angle, e->nodes, e->matrix_seconds, e->skin_seconds,
+        1e-6 * (double)row->bytes);
+}
