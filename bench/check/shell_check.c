@@ -122,7 +122,7 @@ static void check_pose(const RefShellBody *body, BenchElasticFound *found)
 {
     RefWarp warp;
     bool made = ref_warp_create(&body->sheet.shell, &warp, NULL) == SM_OK;
-    double small = 1e-7 * size_of(body), off = 0;
+    double small = 1e-9 * size_of(body), off = 0;
     for (long n = 0; made && n < warp.nodes; n++)
         for (int d = 0; d < 3; d++)
             warp.turned[n][d] = small * sin(3 * (double)d + 9 * sm_dot(warp.X[n], warp.X[n]) /
@@ -257,7 +257,7 @@ void bench_shell_check_state(BenchRunner *runner, BenchElasticFound *found)
     size_t size = 3 * (size_t)sheet->warp.nodes;
     double *before = sm_alloc(2 * size, sizeof *before), *force = sm_alloc(size, sizeof *force);
     double *slope =
-        sm_alloc(9 * size * (size_t)(sheet->holds ? sheet->holds - 1 : 0) / 3 * 3, sizeof *slope);
+        sm_alloc(3 * size * (size_t)(sheet->holds ? sheet->holds - 1 : 0), sizeof *slope);
     double time = runner->time;
     runner->type->get_state(runner->engine, before);
     runner->type->set_state(runner->engine, before);

@@ -68,7 +68,7 @@ static int destroy(void **state)
 
 static BenchElasticFound check(BenchRunner *runner)
 {
-    BenchElasticFound found = {{0}};
+    BenchElasticFound found = {.looked = 0};
     bench_elastic_check_body(ref_meshless_elastic(runner->engine), &found);
     bench_elastic_check_state(runner, &found);
     return found;
@@ -143,7 +143,7 @@ TEST(a_missing_mode_is_missed)
                 whole.shape[n * (size_t)whole.count + (size_t)from];
     }
     elastic->modes = less;
-    BenchElasticFound found = {{0}};
+    BenchElasticFound found = {.looked = 0};
     char reason[160] = "";
     bench_elastic_check_body(elastic, &found);
     assert_false(bench_elastic_verdict(&found, sizeof reason, reason));
@@ -166,7 +166,7 @@ TEST(a_wrong_weight_is_caught)
 
 TEST(what_is_not_finite_is_not_valid)
 {
-    BenchElasticFound found = {{0}};
+    BenchElasticFound found = {.looked = 0};
     char reason[160] = "";
     assert_true(bench_elastic_verdict(&found, sizeof reason, reason));
     bench_elastic_note(&found, BENCH_ELASTIC_STEP, NAN);

@@ -183,7 +183,7 @@ TEST(errors_name_file_line_and_remedy)
         {BODY "title = 3;", "dir/my.cfg:3: 'title' must be text in double quotes"},
         {BODY "paper = \"a name that is far too long for a paper\";", "'paper' must be shorter"},
         {BODY "engine = \"warp\";",
-         "dir/my.cfg:3: 'engine' must be one of \"fastlsm|octree|brute|meshless\""},
+         "dir/my.cfg:3: 'engine' must be one of \"fastlsm|octree|brute|meshless|shell\""},
         {BODY "handles = { rate = 1.0; };", "dir/my.cfg:3: 'handles' must be a list of groups"},
         {BODY "handles = ( 1, 2 );", "dir/my.cfg:3: 'handles' must be a list of groups"},
         {BODY "handles = (\n{ rate = 1.0;\nspeed = 2.0; } );",
