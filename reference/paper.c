@@ -83,6 +83,8 @@ static const struct Column {
     COLUMN("modes", false, modes),
     COLUMN("matrix_s", false, matrix_s),
     COLUMN("mode_s", false, mode_s),
+    COLUMN("map_s", false, map_s),
+    COLUMN("last_nodes", false, last_nodes),
     COLUMN("last_particles", true, last_particles),
     COLUMN("added", true, added),
     COLUMN("last_ms", true, last_ms),

@@ -19,8 +19,9 @@ typedef struct {
     char title[40];            /* as the paper calls it: "Buddha (solid)" */
     RefValue triangles, particles, regions, w;
     RefValue stage_ms[SM_STAGES], stage_percent[SM_STAGES], total_ms;
-    RefValue nodes, modes;     /* meshless's, whose particles are points on the surface */
-    RefValue matrix_s, mode_s; /* meshless's, upper bounds: set-up, seconds */
+    RefValue nodes, modes;      /* meshless's, whose particles are points on the surface */
+    RefValue matrix_s, mode_s;  /* meshless's, upper bounds: set-up, seconds */
+    RefValue map_s, last_nodes; /* of its shells: set-up of parameters; nodes in the end */
     RefValue fps, speedup, bases, summation_nodes; /* octree's; summation nodes per region, mean */
     /* of a scene that changes while it runs; total_ms is its first frame's */
     RefValue last_particles, added;                 /* in the end; at once, at most */

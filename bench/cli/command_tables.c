@@ -209,17 +209,24 @@ static void name_set(const Options *options, const Choice *choice, BenchScene *s
         sm_append(scene->name, sizeof scene->name, "-%s", choice->isa);
 }
 
+/* Where its rows come: those of steps, of meshless bodies, of shells. */
+static int place_of(const BenchScene *scene)
+{
+    unsigned own = bench_engine(scene->engine)->own;
+    return own & BENCH_OF_SHELL ? 2 : own & BENCH_OF_ELASTIC ? 1 : 0;
+}
+
 /* Names the rows (row_report.h), the meshless ones last; fails where a scene is not there. */
 static SmCode plan_rows(Choices *chosen, BenchRow *rows, SmError *error)
 {
     Choice *ordered = sm_alloc((size_t)chosen->count, sizeof *ordered);
     int planned = 0;
     SmCode code = SM_OK;
-    for (int last = 0; last < 2; last++)
+    for (int place = 0; place < 3; place++)
         for (int i = 0; i < chosen->count && !code; i++) {
             BenchScene scene;
             code = find_scene(chosen->options, &chosen->scene[i], &scene, error);
-            if (code || !!(bench_engine(scene.engine)->own & BENCH_OF_ELASTIC) != last) continue;
+            if (code || place_of(&scene) != place) continue;
             name_set(chosen->options, &chosen->scene[i], &scene);
             bench_row_name(&scene, &rows[planned]);
             ordered[planned++] = chosen->scene[i];

@@ -96,7 +96,7 @@ const BenchChecker bench_elastic_checker = {.size = sizeof(BenchElasticFound),
 
 bool bench_row_of_elastic(const BenchRow *row)
 {
-    return bench_engine(row->engine)->own & BENCH_OF_ELASTIC;
+    return bench_engine(row->engine)->own & (BENCH_OF_ELASTIC | BENCH_OF_SHELL);
 }
 
 void bench_elastic_row_describe(const BenchRunner *runner, const SmCounts *counts)

@@ -20,7 +20,7 @@ SmCode bench_elastic_takes(const BenchScene *scene, SmError *error);
 /* Notes in the row what was found, and makes it invalid where that is too much. */
 void bench_elastic_row_note(const BenchElasticFound *found, BenchRow *row);
 
-/* Whether the row is a meshless body's. */
+/* Whether the row is a meshless body's, solid or a shell. */
 bool bench_row_of_elastic(const BenchRow *row);
 
 /* On standard output: what carries it, and its material. */

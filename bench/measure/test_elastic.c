@@ -173,7 +173,7 @@ TEST(what_is_not_finite_is_not_valid)
     bench_elastic_note(&found, BENCH_ELASTIC_STEP, 0);
     assert_false(bench_elastic_verdict(&found, sizeof reason, reason));
     assert_string_equal(reason, "step: not finite");
-    found = (BenchElasticFound){{0}};
+    found = (BenchElasticFound){.looked = 0};
     bench_elastic_note(&found, BENCH_ELASTIC_HELD, INFINITY);
     assert_false(bench_elastic_verdict(&found, sizeof reason, reason));
 }

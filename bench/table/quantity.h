@@ -14,7 +14,8 @@
 typedef enum {
     BENCH_TABLE_LATTICES, /* steps of lattices alone; */
     BENCH_TABLE_STEPS,    /* with rows of octrees, or of that paper */
-    BENCH_TABLE_FRAMES,   /* of meshless bodies */
+    BENCH_TABLE_FRAMES,   /* of solid meshless bodies */
+    BENCH_TABLE_SHELLS,   /* and of shells */
     BENCH_TABLE_CHANGES,  /* of scenes that change while they run */
     BENCH_TABLE_COUNTERS, /* what the processor counted, of any row */
     BENCH_TABLES

@@ -27,10 +27,24 @@ static bool shown(const BenchQuantity *quantity, BenchTableKind table, BenchGrid
     return quantity->shown[table] >> form & 1;
 }
 
-/* Is the row one of a table of frames, or of another? */
+BenchTableKind bench_row_table(const BenchRow *row)
+{
+    unsigned own = bench_engine(row->engine)->own;
+    return own & BENCH_OF_SHELL     ? BENCH_TABLE_SHELLS
+           : own & BENCH_OF_ELASTIC ? BENCH_TABLE_FRAMES
+                                    : BENCH_TABLE_LATTICES;
+}
+
+static bool of_frames(BenchTableKind table)
+{
+    return table == BENCH_TABLE_FRAMES || table == BENCH_TABLE_SHELLS;
+}
+
+/* Is the row one of this table of frames, or of one of steps? */
 static bool is_in(const BenchRow *row, BenchTableKind table)
 {
-    return bench_row_of_elastic(row) == (table == BENCH_TABLE_FRAMES);
+    BenchTableKind own = bench_row_table(row);
+    return of_frames(table) ? own == table : !of_frames(own);
 }
 
 /* A stage is a column where the engine of one of the table's rows has it. */
@@ -58,7 +72,7 @@ void bench_row_columns(const BenchRow *rows, int count, BenchTableKind table, Be
     }
     for (int r = 0; r < count; r++) {
         int width = (int)strlen(rows[r].scene);
-        bool here = table != BENCH_TABLE_FRAMES || is_in(&rows[r], table);
+        bool here = !of_frames(table) || is_in(&rows[r], table);
         if (here && width > grid->width[0]) grid->width[0] = width;
     }
 }
@@ -134,6 +148,6 @@ void bench_row_lines(const BenchRow *row, BenchTableKind table, BenchGridForm fo
     const RefPaperRow *paper = ref_paper_find(row->paper, row->paper_row);
     measured_line(row, table, form, grid);
     if (paper && table != BENCH_TABLE_COUNTERS &&
-        (table != BENCH_TABLE_FRAMES || isfinite(paper->nodes.value)))
+        (!of_frames(table) || isfinite(paper->nodes.value)))
         paper_line(paper, form, grid);
 }

@@ -7,6 +7,10 @@
 
 #include "quantity.h"
 
+/* The kind of table that a row is in: of frames, of shells, or BENCH_TABLE_LATTICES for any of
+ * steps. */
+BenchTableKind bench_row_table(const BenchRow *row);
+
 /* The table of steps for these rows, which need only have their paper and engine yet. */
 BenchTableKind bench_row_steps(const BenchRow *rows, int count);
 

@@ -1,34 +1,35 @@
 #include "row_report.h"
 
-#include "../measure/elastic_checker.h"
 #include "explain.h"
 #include "row_grid.h"
 
-static void print_heading(const BenchReport *report, bool elastic)
+static void print_heading(const BenchReport *report, BenchTableKind kind)
 {
     char where[BENCH_WHERE_TEXT];
     BenchMachine machine = *report->machine;
-    if (elastic) machine.threads = 1; /* whatever others have */
+    bool steps = kind == BENCH_TABLE_LATTICES;
+    if (!steps) machine.threads = 1; /* whatever others have */
     bench_machine_where(&machine, where);
-    if (elastic)
-        fprintf(report->file,
-                "Meshless bodies: times of one frame, median, on %s:\n"
-                "the modes' motion, and the points that it carries (skin).\n\n",
-                where);
-    else
+    if (steps)
         fprintf(report->file, "Times of one step, median, stages in percent, on %s.\n\n", where);
+    else
+        fprintf(report->file,
+                "%s: times of one frame, median, on %s:\n"
+                "%s motion, and the points that it carries (skin).\n\n",
+                kind == BENCH_TABLE_SHELLS ? "Thin shells" : "Meshless bodies", where,
+                kind == BENCH_TABLE_SHELLS ? "the nodes'" : "the modes'");
 }
 
-static BenchTableKind table_of(const BenchReport *report, bool elastic)
+static BenchTableKind table_of(const BenchReport *report, BenchTableKind kind)
 {
-    return elastic ? BENCH_TABLE_FRAMES : bench_row_steps(report->rows, report->count);
+    return kind != BENCH_TABLE_LATTICES ? kind : bench_row_steps(report->rows, report->count);
 }
 
-static void begin_table(BenchReport *report, bool elastic)
+static void begin_table(BenchReport *report, BenchTableKind kind)
 {
-    if (report->form == BENCH_GRID_PLAIN) print_heading(report, elastic);
+    if (report->form == BENCH_GRID_PLAIN) print_heading(report, kind);
     if (report->form == BENCH_GRID_MARKDOWN) bench_machine_measured(report->file, report->machine);
-    bench_row_columns(report->rows, report->count, table_of(report, elastic), report->form,
+    bench_row_columns(report->rows, report->count, table_of(report, kind), report->form,
                       &report->grid);
     bench_grid_head(report->file, &report->grid, report->form);
 }
@@ -54,7 +55,7 @@ static void end_table(BenchReport *report)
 {
     if (!report->written) return;
     bench_grid_end(report->file, report->form);
-    if (!bench_row_of_elastic(&report->rows[report->written - 1]))
+    if (bench_row_table(&report->rows[report->written - 1]) == BENCH_TABLE_LATTICES)
         write_more(report, BENCH_TABLE_CHANGES,
                    "While they change: nodes at first and at most; simulation is the time of a "
                    "frame before the\nfirst change and after the last.\n\n");
@@ -65,14 +66,14 @@ void bench_report_rows(BenchReport *report, int measured)
 {
     for (; report->written < measured; report->written++) {
         const BenchRow *row = &report->rows[report->written];
-        bool elastic = bench_row_of_elastic(row);
-        if (!report->written || bench_row_of_elastic(row - 1) != elastic) {
+        BenchTableKind kind = bench_row_table(row);
+        if (!report->written || bench_row_table(row - 1) != kind) {
             end_table(report);
             if (report->written) fputc('\n', report->file);
-            begin_table(report, elastic);
+            begin_table(report, kind);
         }
         report->grid.lines = 0;
-        bench_row_lines(row, table_of(report, elastic), report->form, &report->grid);
+        bench_row_lines(row, table_of(report, kind), report->form, &report->grid);
         bench_grid_lines(report->file, &report->grid, report->form);
     }
     fflush(report->file);
