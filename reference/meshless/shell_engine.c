@@ -12,7 +12,7 @@
 #include "motion/grip.h"
 #include "shell/foot.h"
 
-enum { MOST_POINTS = 24, MOST_LOOSE = 4 };
+enum { MOST_POINTS = 12, MOST_LOOSE = 4 };
 
 /* The holds that a handle has become. */
 typedef struct {

@@ -72,33 +72,40 @@ static void place(const RefSkin *skin, const RefSkinBlock *block, const double (
     }
 }
 
+/* Slopes side by side, anywhere where doubles may be. */
+typedef double Slopes
+    __attribute__((vector_size(REF_FRAME_SLOPES * sizeof(double)), aligned(sizeof(double))));
+
 static void slopes(int count, const int *node, const double (*slope)[REF_FRAME_SLOPES],
                    const double (*u)[3], double sum[3][REF_FRAME_SLOPES])
 {
-    double x[REF_FRAME_SLOPES] = {0}, y[REF_FRAME_SLOPES] = {0}, z[REF_FRAME_SLOPES] = {0};
+    Slopes x = {0}, y = {0}, z = {0};
     for (int n = 0; n < count; n++) {
+        const Slopes *here = (const Slopes *)slope[n];
         const double *at = u[node[n]];
-        for (int j = 0; j < REF_FRAME_SLOPES; j++) {
-            x[j] += slope[n][j] * at[0];
-            y[j] += slope[n][j] * at[1];
-            z[j] += slope[n][j] * at[2];
-        }
+        x += *here * at[0];
+        y += *here * at[1];
+        z += *here * at[2];
     }
-    memcpy(sum[0], x, sizeof x);
-    memcpy(sum[1], y, sizeof y);
-    memcpy(sum[2], z, sizeof z);
+    *(Slopes *)sum[0] = x;
+    *(Slopes *)sum[1] = y;
+    *(Slopes *)sum[2] = z;
 }
 
 static void spread(int count, const int *node, const double (*slope)[REF_FRAME_SLOPES],
-                   const double gain[3][REF_FRAME_SLOPES], double (*right)[3])
+                   const double gain[REF_FRAME_SLOPES][REF_FRAME_SLOPES],
+                   double (*to)[REF_FRAME_SLOPES])
 {
-    for (int n = 0; n < count; n++)
-        for (int d = 0; d < 3; d++) {
-            double sum = 0;
-#pragma omp simd reduction(+ : sum)
-            for (int j = 0; j < REF_FRAME_SLOPES; j++) sum += slope[n][j] * gain[d][j];
-            right[node[n]][d] += sum;
+    Slopes from[REF_FRAME_SLOPES];
+    memcpy(from, gain, sizeof from);
+    for (int n = 0; n < count; n++) {
+        Slopes *at = (Slopes *)to[node[n]], even = *at, odd = {0};
+        for (int j = 0; j < REF_FRAME_SLOPES; j += 2) {
+            even += from[j] * slope[n][j];
+            odd += from[j + 1] * slope[n][j + 1];
         }
+        *at = even + odd;
+    }
 }
 
 const RefFrameSums SM_ISA_NAME(ref_frame_sums) = {apply, add, place, slopes, spread};

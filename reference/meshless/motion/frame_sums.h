@@ -20,11 +20,12 @@ typedef struct {
                   const double (*turned)[3], double (*position)[3]);
 
     /* sum[d][j] = sum over the nodes of slope[n][j] u[node[n]][d]; and what that is the transpose
-     * of: right[node[n]][d] += sum over j of slope[n][j] gain[d][j]. */
+     * of, of eight fields: to[node[n]][l] += sum over j of slope[n][j] gain[j][l]. */
     void (*slopes)(int count, const int *node, const double (*slope)[REF_FRAME_SLOPES],
                    const double (*u)[3], double sum[3][REF_FRAME_SLOPES]);
     void (*spread)(int count, const int *node, const double (*slope)[REF_FRAME_SLOPES],
-                   const double gain[3][REF_FRAME_SLOPES], double (*right)[3]);
+                   const double gain[REF_FRAME_SLOPES][REF_FRAME_SLOPES],
+                   double (*to)[REF_FRAME_SLOPES]);
 } RefFrameSums;
 extern RefFrameSums ref_frame_sums;
 

@@ -15,7 +15,7 @@ static void release(RefSheet *sheet)
 {
     for (int k = 0; k < sheet->holds; k++)
         sm_free_all(sheet->hold[k].x, sheet->hold[k].reach, sheet->hold[k].slope,
-                    sheet->hold[k].answer);
+                    sheet->hold[k].answer, sheet->hold[k].flux);
     ref_rows_free(&sheet->rows);
     sm_free_all(sheet->hold, sheet->aim);
     sheet->hold = NULL;
@@ -29,7 +29,7 @@ void ref_sheet_free(RefSheet *sheet)
     ref_steps_free(&sheet->steps);
     ref_warp_free(&sheet->warp);
     ref_shell_free(&sheet->shell);
-    sm_free_all(sheet->weight, sheet->force, sheet->impulse, sheet->pull);
+    sm_free_all(sheet->weight, sheet->force, sheet->impulse);
     *sheet = (RefSheet){.holds = 0};
 }
 
@@ -62,7 +62,6 @@ SmCode ref_sheet_create(const RefChart *chart, const RefSheetOptions *options, R
     sheet->weight = sm_alloc(nodes, sizeof *sheet->weight);
     sheet->force = sm_alloc(nodes, sizeof *sheet->force);
     sheet->impulse = sm_alloc(nodes, sizeof *sheet->impulse);
-    sheet->pull = sm_alloc(3 * nodes, sizeof *sheet->pull);
     weigh(sheet);
     ref_warp_pull(&sheet->warp, CONST(sheet->weight));
     ref_sheet_pose(sheet);
@@ -174,6 +173,8 @@ static void find_reaches(RefSheet *sheet, const RefRows *rows, RefSheetHold *hol
         ref_solver_solve(sheet->warp.solver, b, NULL, hold[k].reach);
         hold[k].slope = sm_alloc(size, sizeof *hold[k].slope);
         hold[k].answer = sm_alloc(size, sizeof *hold[k].answer);
+        hold[k].flux = sm_alloc(REF_WARP_PLACES * (size_t)sheet->warp.cells, sizeof *hold[k].flux);
+        ref_warp_flux(&sheet->warp, hold[k].reach, hold[k].flux);
     }
     free(b);
 }
@@ -300,25 +301,23 @@ void ref_sheet_aim(RefSheet *sheet, int k, const double pose[3][4])
 
 /* ---- steps */
 
-/* The slopes of the places that are held by the parameters. */
-static void find_slopes(RefSheet *sheet)
+/* The slopes of one coordinate of the places that are held, and the answers. */
+static void find_slopes(RefSheet *sheet, int axis)
 {
-    size_t size = 3 * (size_t)sheet->warp.nodes;
-    for (int k = 1; k < sheet->holds; k++)
-        for (size_t d = 0; d < 3; d++) {
-            double(*pull)[3] = (double(*)[3])sheet->pull;
-            memset(pull, 0, size * sizeof(double));
-            for (long n = 0; n < sheet->warp.nodes; n++) pull[n][d] = sheet->hold[k].reach[n];
-            ref_warp_slope(&sheet->warp, CONST(sheet->steps.u), CONST(pull),
-                           (double(*)[3])(sheet->hold[k].slope + d * size));
-        }
+    size_t from = 3 * (size_t)sheet->warp.nodes * (size_t)axis;
+    for (int k = 1; k < sheet->holds; k++) {
+        const RefSheetHold *hold = sheet->hold + k;
+        ref_warp_slope(&sheet->warp, (const double(*)[2])hold->flux, axis,
+                       (double(*)[3])(hold->slope + from));
+        ref_solver_solve(sheet->steps.solver, hold->slope + from, NULL, hold->answer + from);
+    }
 }
 
 void ref_sheet_pose(RefSheet *sheet)
 {
     set_targets(sheet);
     ref_warp_pose(&sheet->warp, CONST(sheet->steps.u));
-    find_slopes(sheet);
+    for (int axis = 0; axis < 3; axis++) find_slopes(sheet, axis);
 }
 
 /* By how much the holds beyond the first are to move, less what these speeds make them. */
@@ -345,8 +344,7 @@ static void close_gaps(RefSheet *sheet)
     find_gaps(sheet, gap);
     for (size_t c = 0; c < count; c++) {
         const RefSheetHold *hold = sheet->hold + 1 + c / 3;
-        double *answer = hold->answer + c % 3 * size;
-        ref_solver_solve(sheet->steps.solver, hold->slope + c % 3 * size, NULL, answer);
+        const double *answer = hold->answer + c % 3 * size;
         for (size_t r = 0; r < count; r++) {
             const double *slope = sheet->hold[1 + r / 3].slope + r % 3 * size;
             for (size_t n = 0; n < size; n++) S[r * count + c] += slope[n] * answer[n];
@@ -389,7 +387,9 @@ void ref_sheet_step(RefSheet *sheet)
     if (sheet->holds > 1) close_gaps(sheet);
     if (sheet->pushed) ref_warp_pull(&sheet->warp, CONST(sheet->weight));
     sheet->pushed = false;
-    ref_sheet_pose(sheet);
+    ref_warp_pose(&sheet->warp, CONST(steps->u));
+    find_slopes(sheet, sheet->axis);
+    sheet->axis = (sheet->axis + 1) % 3;
 }
 
 void ref_sheet_off(const RefSheet *sheet, int k, double *place, double *turn)

@@ -33,6 +33,7 @@ typedef struct {
     /* Of all but the first: how what tangents gain moves it beside that one, [nodes]; the slopes of
      * its three coordinates by the parameters, [3][3 nodes], and what forces along these do. */
     double *reach, *slope, *answer;
+    double (*flux)[2]; /* the first one's, at the warp's places */
 } RefSheetHold;
 
 typedef struct {
@@ -47,7 +48,7 @@ typedef struct {
     RefSheetHold *hold;
     RefRows rows; /* of the steps: what the first hold binds, and shapes and turns of others */
     double *aim;  /* [rows] their values */
-    double *pull; /* [3 nodes] scratch */
+    int axis;     /* whose slopes are found after the next step */
 } RefSheet;
 
 /* At rest and free. `sheet` must not move in memory. The caller frees. Errors: those of shell.h and
@@ -65,12 +66,12 @@ SmCode ref_sheet_hold(RefSheet *sheet, int grips, const RefSheetGrip *grip, SmEr
 void ref_sheet_aim(RefSheet *sheet, int k, const double pose[3][4]);
 
 /* One step of h. Forces, and what the holds beyond the first need to be where they are to be, act
- * along the slopes that the surface's places have by the parameters. What is left of the holds
- * after the step, whose slopes are those of its beginning, is spread over the surface, which meets
- * them to rounding, and is taken up in the next step. Three solves for each hold but the first. */
+ * along the slopes that the surface's places have by the parameters: of one axis a step these are
+ * found anew, with a solve for each hold. What is left of the holds after the step is spread over
+ * the surface, which meets them to rounding, and is taken up in the next step. */
 void ref_sheet_step(RefSheet *sheet);
 
-/* After u and v were changed from outside: where the surface is then. */
+/* After u and v were changed from outside: where the surface is then, with all slopes. */
 void ref_sheet_pose(RefSheet *sheet);
 
 /* How far a hold's points are off, and its tangents, these as turns. */

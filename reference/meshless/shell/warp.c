@@ -25,10 +25,10 @@ void ref_warp_free(RefWarp *warp)
 {
     release(warp);
     ref_matrices_free(&warp->laplacian);
-    sm_free_all(warp->start, warp->node, warp->slope, warp->place, warp->near, warp->other,
-                warp->lean, warp->X, warp->rest_normal, warp->mass, warp->moved, warp->turned,
-                warp->pulled, warp->right, warp->pull, warp->drawn, warp->column[0],
-                warp->column[1]);
+    sm_free_all(warp->turn, warp->tug, warp->sum, warp->start, warp->node, warp->slope, warp->place,
+                warp->near, warp->other, warp->lean, warp->X, warp->rest_normal, warp->mass,
+                warp->moved, warp->turned, warp->pulled, warp->right, warp->answer, warp->drawn,
+                warp->column[0], warp->column[1]);
     *warp = (RefWarp){.nodes = 0};
 }
 
@@ -81,6 +81,8 @@ static void make_cells(const RefShell *shell, RefWarp *warp)
     size_t cells = (size_t)shell->tree.leaves;
     warp->start = sm_alloc(cells + 1, sizeof *warp->start);
     warp->place = sm_alloc(PLACES * cells, sizeof *warp->place);
+    warp->turn = sm_alloc(PLACES * cells, sizeof *warp->turn);
+    warp->tug = sm_alloc(PLACES * cells, sizeof *warp->tug);
     for (long n = 0; n < warp->nodes; n++) number[n] = -1;
     for (long c = 0; c < shell->tree.count; c++) {
         double middle[2], edge[2], theta[3];
@@ -179,14 +181,15 @@ SmCode ref_warp_create(const RefShell *shell, RefWarp *warp, SmError *error)
 {
     size_t nodes = (size_t)shell->nodes.count;
     *warp = (RefWarp){.nodes = shell->nodes.count};
-    double(**field[])[3] = {&warp->X,      &warp->rest_normal, &warp->moved, &warp->turned,
-                            &warp->pulled, &warp->right,       &warp->pull,  &warp->drawn};
+    double(**field[])[3] = {&warp->X,      &warp->rest_normal, &warp->moved,  &warp->turned,
+                            &warp->pulled, &warp->right,       &warp->answer, &warp->drawn};
     for (size_t f = 0; f < sizeof field / sizeof *field; f++)
         *field[f] = sm_alloc(nodes, sizeof **field[f]);
     memcpy(warp->X, shell->X, nodes * sizeof *warp->X);
     warp->near = sm_alloc(nodes + 1, sizeof *warp->near);
     warp->mass = sm_alloc(nodes, sizeof *warp->mass);
     for (int k = 0; k < 2; k++) warp->column[k] = sm_alloc(nodes, sizeof(double));
+    warp->sum = sm_alloc(nodes, sizeof *warp->sum);
     make_cells(shell, warp);
     make_normals(shell, warp);
     make_laplacian(warp);
@@ -227,19 +230,6 @@ static void solve(RefWarp *warp, const double (*right)[3], const double (*target
     }
 }
 
-void ref_warp_pull(RefWarp *warp, const double (*force)[3])
-{
-    double all[3] = {0};
-    for (long n = 0; n < warp->nodes; n++)
-        for (int d = 0; d < 3; d++) all[d] += force[n][d];
-    for (long n = 0; n < warp->nodes; n++)
-        for (int d = 0; d < 3; d++) {
-            warp->drawn[n][d] = warp->rows.count ? 0 : warp->mass[n] * all[d];
-            warp->right[n][d] = force[n][d] - warp->drawn[n][d];
-        }
-    solve(warp, (const double(*)[3])warp->right, NULL, warp->pull);
-}
-
 /* The turn of a place, from the slopes of u there. */
 static void turn_at(const RefWarpPlace *place, const double slope[2][3], double w[3])
 {
@@ -266,24 +256,49 @@ static void lift(const double q[3], const double vector[2][3], double raised[2][
         for (int d = 0; d < 3; d++) raised[k][d] = q[k] * vector[k][d] + q[2] * vector[!k][d];
 }
 
-/* What the forces' work, sum f^k . tangent_k, is by the slopes of u: with tangent_k = exp(w) s_k,
- * s_k = a_k + u,k - w x a_k, and f turned back. */
-static void work_slope(const RefWarpPlace *place, const double w[3], const double R[9],
-                       const double s[2][3], const double f[2][3], double slope[2][3])
+void ref_warp_pull(RefWarp *warp, const double (*force)[3])
 {
+    double all[3] = {0};
+    for (long n = 0; n < warp->nodes; n++)
+        for (int d = 0; d < 3; d++) all[d] += force[n][d];
+    for (long n = 0; n < warp->nodes; n++)
+        for (int d = 0; d < 3; d++) {
+            warp->drawn[n][d] = warp->rows.count ? 0 : warp->mass[n] * all[d];
+            warp->right[n][d] = force[n][d] - warp->drawn[n][d];
+        }
+    solve(warp, (const double(*)[3])warp->right, NULL, warp->answer);
+    for (long c = 0; c < warp->cells; c++) {
+        double sum[3][LANES], slope[2][3];
+        ref_frame_sums.slopes((int)(warp->start[c + 1] - warp->start[c]),
+                              warp->node + warp->start[c],
+                              (const double(*)[LANES])(warp->slope + warp->start[c]),
+                              (const double(*)[3])warp->answer, sum);
+        for (int p = 0; p < PLACES; p++) {
+            slopes_at((const double(*)[LANES])sum, p, slope);
+            lift(warp->place[PLACES * c + p].metric, (const double(*)[3])slope,
+                 warp->tug[PLACES * c + p]);
+        }
+    }
+}
+
+/* What the forces' work, sum f^k . tangent_k, is by the slopes of u. */
+static void work_slope(const RefWarpPlace *place, const RefWarpTurn *turn, const double f[2][3],
+                       double slope[2][3])
+{
+    const double *R = turn->R;
     double moment[3] = {0}, mean[3], back[2][3];
     for (int k = 0; k < 2; k++) {
-        double turn[3];
+        double about[3];
         for (int d = 0; d < 3; d++)
             back[k][d] = R[d] * f[k][0] + R[3 + d] * f[k][1] + R[6 + d] * f[k][2];
-        sm_cross(s[k], back[k], turn);
-        for (int d = 0; d < 3; d++) moment[d] += turn[d];
+        sm_cross(turn->tangent[k], back[k], about);
+        for (int d = 0; d < 3; d++) moment[d] += about[d];
     }
-    ref_rotation_mean(w, moment, mean); /* d exp(w) = exp(w) [Rt^T dw]x */
+    ref_rotation_mean(turn->w, moment, mean); /* d exp(w) = exp(w) [Rt^T dw]x */
     for (int k = 0; k < 2; k++) {
-        double turn[3];
-        sm_cross(place->tangent[k], back[k], turn);
-        for (int d = 0; d < 3; d++) mean[d] -= turn[d];
+        double about[3];
+        sm_cross(place->tangent[k], back[k], about);
+        for (int d = 0; d < 3; d++) mean[d] -= about[d];
     }
     double spin = sm_dot(place->normal, mean) / 2;
     for (int k = 0; k < 2; k++) {
@@ -293,56 +308,84 @@ static void work_slope(const RefWarpPlace *place, const double w[3], const doubl
     }
 }
 
-/* One place: what its tangents gain, raised, and what the forces do to u. */
-static void turn_place(const RefWarpPlace *place, const double slope[2][3], const double pull[2][3],
-                       double gain[2][3], double force[2][3])
+/* One place: how it turns, and what its tangents gain. */
+static void turn_place(const RefWarpPlace *place, const double slope[2][3], RefWarpTurn *turn,
+                       double gain[2][3])
 {
-    double w[3], R[9], s[2][3], more[2][3], f[2][3];
-    turn_at(place, slope, w);
-    ref_rotation(w, R);
+    turn_at(place, slope, turn->w);
+    ref_rotation(turn->w, turn->R);
     for (int k = 0; k < 2; k++) {
-        double turn[3];
-        sm_cross(w, place->tangent[k], turn);
-        for (int d = 0; d < 3; d++) s[k][d] = place->tangent[k][d] + slope[k][d] - turn[d];
+        const double *a = place->tangent[k], *R = turn->R;
+        double *s = turn->tangent[k], about[3];
+        sm_cross(turn->w, a, about);
+        for (int d = 0; d < 3; d++) s[d] = a[d] + slope[k][d] - about[d];
         for (int d = 0; d < 3; d++)
-            more[k][d] = R[3 * d] * s[k][0] + R[3 * d + 1] * s[k][1] + R[3 * d + 2] * s[k][2] -
-                         place->tangent[k][d];
+            gain[k][d] = R[3 * d] * s[0] + R[3 * d + 1] * s[1] + R[3 * d + 2] * s[2] - a[d];
     }
-    lift(place->metric, more, gain);
-    lift(place->metric, pull, f);
-    work_slope(place, w, R, (const double(*)[3])s, (const double(*)[3])f, force);
 }
 
-static void pose_cell(const RefWarp *warp, long c, const double (*u)[3], const double (*pull)[3],
-                      double (*right)[3], double (*pulled)[3])
+/* Lanes of what is spread: three of the right side, and three of forces from the fourth on. */
+enum { FORCE = 4 };
+
+static void pose_cell(RefWarp *warp, long c, const double (*u)[3])
 {
     int count = (int)(warp->start[c + 1] - warp->start[c]);
     const int *node = warp->node + warp->start[c];
     const double(*slope)[LANES] = (const double(*)[LANES])(warp->slope + warp->start[c]);
-    double sum[3][LANES], pulls[3][LANES], gain[3][LANES], force[3][LANES];
+    double sum[3][LANES], spread[LANES][LANES] = {{0}};
     ref_frame_sums.slopes(count, node, slope, u, sum);
-    ref_frame_sums.slopes(count, node, slope, pull, pulls);
     for (int p = 0; p < PLACES; p++) {
-        double at[2][3], f[2][3], more[2][3], forces[2][3];
+        const RefWarpPlace *place = warp->place + PLACES * c + p;
+        RefWarpTurn *turn = warp->turn + PLACES * c + p;
+        double at[2][3], gain[2][3], raised[2][3], force[2][3];
         slopes_at((const double(*)[LANES])sum, p, at);
-        slopes_at((const double(*)[LANES])pulls, p, f);
-        turn_place(warp->place + PLACES * c + p, (const double(*)[3])at, (const double(*)[3])f,
-                   more, forces);
+        turn_place(place, (const double(*)[3])at, turn, gain);
+        lift(place->metric, (const double(*)[3])gain, raised);
+        work_slope(place, turn, (const double(*)[3])warp->tug[PLACES * c + p], force);
         for (int k = 0; k < 2; k++)
             for (int d = 0; d < 3; d++) {
-                gain[d][2 * p + k] = more[k][d];
-                force[d][2 * p + k] = forces[k][d];
+                spread[2 * p + k][d] = raised[k][d];
+                spread[2 * p + k][FORCE + d] = force[k][d];
             }
     }
-    if (right) ref_frame_sums.spread(count, node, slope, (const double(*)[LANES])gain, right);
-    ref_frame_sums.spread(count, node, slope, (const double(*)[LANES])force, pulled);
+    ref_frame_sums.spread(count, node, slope, (const double(*)[LANES])spread, warp->sum);
 }
 
-void ref_warp_slope(const RefWarp *warp, const double (*u)[3], const double (*pull)[3],
-                    double (*force)[3])
+void ref_warp_flux(const RefWarp *warp, const double *reach, double (*flux)[2])
 {
-    memset(force, 0, (size_t)warp->nodes * sizeof *force);
-    for (long c = 0; c < warp->cells; c++) pose_cell(warp, c, u, pull, NULL, force);
+    double(*field)[3] = sm_alloc((size_t)warp->nodes, sizeof *field), sum[3][LANES];
+    for (long n = 0; n < warp->nodes; n++) field[n][0] = reach[n];
+    for (long c = 0; c < warp->cells; c++) {
+        ref_frame_sums.slopes(
+            (int)(warp->start[c + 1] - warp->start[c]), warp->node + warp->start[c],
+            (const double(*)[LANES])(warp->slope + warp->start[c]), (const double(*)[3])field, sum);
+        for (int p = 0; p < PLACES; p++) {
+            const double *q = warp->place[PLACES * c + p].metric, *slope = sum[0] + 2 * p;
+            for (int k = 0; k < 2; k++)
+                flux[PLACES * c + p][k] = q[k] * slope[k] + q[2] * slope[!k];
+        }
+    }
+    free(field);
+}
+
+void ref_warp_slope(RefWarp *warp, const double (*flux)[2], int axis, double (*force)[3])
+{
+    memset(warp->sum, 0, (size_t)warp->nodes * sizeof *warp->sum);
+    for (long c = 0; c < warp->cells; c++) {
+        double spread[LANES][LANES] = {{0}};
+        for (int p = 0; p < PLACES; p++) {
+            long at = PLACES * c + p;
+            double f[2][3] = {{0}}, slope[2][3];
+            for (int k = 0; k < 2; k++) f[k][axis] = flux[at][k];
+            work_slope(warp->place + at, warp->turn + at, (const double(*)[3])f, slope);
+            for (int k = 0; k < 2; k++) memcpy(spread[2 * p + k], slope[k], sizeof slope[k]);
+        }
+        ref_frame_sums.spread((int)(warp->start[c + 1] - warp->start[c]),
+                              warp->node + warp->start[c],
+                              (const double(*)[LANES])(warp->slope + warp->start[c]),
+                              (const double(*)[LANES])spread, warp->sum);
+    }
+    for (long n = 0; n < warp->nodes; n++) memcpy(force[n], warp->sum[n], sizeof *force);
 }
 
 /* What a normal is by the surface's slopes there, less the one at rest. */
@@ -371,11 +414,13 @@ static void drift(RefWarp *warp, const double (*u)[3])
 
 void ref_warp_pose(RefWarp *warp, const double (*u)[3])
 {
-    size_t size = (size_t)warp->nodes * sizeof *warp->right;
-    memset(warp->right, 0, size);
-    memcpy(warp->pulled, warp->drawn, size);
-    for (long c = 0; c < warp->cells; c++)
-        pose_cell(warp, c, u, (const double(*)[3])warp->pull, warp->right, warp->pulled);
+    memset(warp->sum, 0, (size_t)warp->nodes * sizeof *warp->sum);
+    for (long c = 0; c < warp->cells; c++) pose_cell(warp, c, u);
+    for (long n = 0; n < warp->nodes; n++)
+        for (int d = 0; d < 3; d++) {
+            warp->right[n][d] = warp->sum[n][d];
+            warp->pulled[n][d] = warp->drawn[n][d] + warp->sum[n][FORCE + d];
+        }
     solve(warp, (const double(*)[3])warp->right, (const double(*)[3])warp->target, warp->moved);
     if (!warp->rows.count) drift(warp, u);
     for (long n = 0; n < warp->nodes; n++) turn_normal(warp, n);

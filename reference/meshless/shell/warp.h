@@ -25,6 +25,11 @@ typedef struct {
     double metric[3];    /* area times g^kl */
 } RefWarpPlace;
 
+/* How it has turned: with tangents exp(w) s_k, s_k = a_k + e_k. */
+typedef struct {
+    double w[3], R[9], tangent[2][3];
+} RefWarpTurn;
+
 typedef struct {
     long nodes, cells;
     long *start;                       /* [cells + 1] */
@@ -46,10 +51,13 @@ typedef struct {
     double (*turned)[3]; /* [nodes] normals, less those at rest */
     double (*pulled)[3]; /* [nodes] what forces do to parameters, from their potential's slope */
     double (*right)[3];  /* [nodes] of the solve */
-    double (*pull)[3];   /* [nodes] what answers to the forces: its slopes pull at tangents; */
+    double (*answer)[3]; /* [nodes] what answers to the forces at the nodes: its slopes */
+    double (*tug)[2][3]; /* [4 cells] pull at tangents, raised; */
     double (*drawn)[3];  /* [nodes] and the rest of them, whatever the pose */
-    double *column[2];   /* [nodes] */
-    double *bound;       /* [rows] */
+    RefWarpTurn *turn;   /* [4 cells] */
+    double (*sum)[REF_FRAME_SLOPES]; /* [nodes] */
+    double *column[2];               /* [nodes] */
+    double *bound;                   /* [rows] */
 } RefWarp;
 
 /* Of a shell at rest that nothing holds. The caller frees. Errors: solver.h's. */
@@ -67,10 +75,12 @@ void ref_warp_pull(RefWarp *warp, const double (*force)[3]);
 /* moved, turned and pulled from u, [nodes][3]. O(cells * covers), and three solves. */
 void ref_warp_pose(RefWarp *warp, const double (*u)[3]);
 
-/* What pulls at the tangents, as the answers to forces at the nodes do, [nodes][3], make of
- * parameters u: `force`, [nodes][3]. */
-void ref_warp_slope(const RefWarp *warp, const double (*u)[3], const double (*pull)[3],
-                    double (*force)[3]);
+/* Of a field on the nodes, [nodes]: area g^kl times its slopes at the places, [4 cells][2]. */
+void ref_warp_flux(const RefWarp *warp, const double *reach, double (*flux)[2]);
+
+/* What a flux along an axis that pulls at the tangents does to the parameters, as they were posed
+ * last: [nodes][3]. */
+void ref_warp_slope(RefWarp *warp, const double (*flux)[2], int axis, double (*force)[3]);
 
 /* The turn w that u, [nodes][3], has on average over the places of a cell. */
 void ref_warp_turn(const RefWarp *warp, long cell, const double (*u)[3], double w[3]);
