@@ -222,10 +222,10 @@ TEST(its_stage_is_a_column_beside_those_of_others)
     assert_written(rows, 2, BENCH_AS_MARKDOWN, "| - | - | - | - | - | 5.00 (62%) | 8.00 |");
     assert_written(rows, 2, BENCH_AS_LATEX, "& other & pull & total ms &");
     assert_written(rows, 2, BENCH_AS_LATEX, "& - & - & - & - & - & 5.00 (62\\%) & 8.00 &");
-    assert_written(rows, 2, BENCH_AS_CSV, ",motion_ms,skin_ms,pull_ms\n");
+    assert_written(rows, 2, BENCH_AS_CSV, ",motion_ms,skin_ms,pull_ms,parameters_s,last_nodes\n");
     assert_written(rows, 2, BENCH_AS_CSV, ",117,2,0,1,2,3,4,5,8,");
     assert_written(rows, 2, BENCH_AS_CSV, ",toy,springs,208,0,0,0,,,,,,8,");
-    assert_written(rows, 2, BENCH_AS_CSV, ",,,5\n");
+    assert_written(rows, 2, BENCH_AS_CSV, ",,,5,,\n");
     assert_written(rows, 2, BENCH_AS_JSON, "\"other_ms\": null");
     assert_written(rows, 2, BENCH_AS_JSON, "\"pull_ms\": null");
     assert_written(rows, 2, BENCH_AS_JSON, "\"pull_ms\": 5.0");
@@ -293,7 +293,7 @@ TEST(it_is_named_with_the_others)
     const SmEngineType *type;
     SmError error;
     assert_int_equal(bench_engine_find("spring", NULL, &type, &error), SM_USAGE);
-    assert_non_null(strstr(error.text, "meshless (double), springs (double)"));
+    assert_non_null(strstr(error.text, "meshless (double), shell (double), springs (double)"));
 }
 
 static void assert_refused(const char *more, const char *what)

@@ -91,7 +91,8 @@ static void assert_sound(const SmShape *shape, const SmMesh *mesh)
     assert_int_equal(mesh->triangle_count, shape->triangles);
     assert_closed(mesh);
     bool handles = !strcmp(shape->name, "statue") || !strcmp(shape->name, "santa");
-    if (!handles) assert_int_equal(euler(mesh), 2);
+    bool bore = !strcmp(shape->name, "rockerarm");
+    if (!handles) assert_int_equal(euler(mesh), bore ? 0 : 2);
 }
 
 /* The same bits on every machine and from every compiler: else a result from elsewhere is one of
@@ -111,6 +112,10 @@ TEST(test_shapes_are_closed_and_have_the_same_bits_everywhere)
         {"balljoint", 0x3d68da6df65651a9, 0xc2bbc6f97c3af25f},
         {"rabbit", 0x9490ada622026c9a, 0x5daf0416cfd322da},
         {"santa", 0x268943912ca10804, 0xb37188ca30c4fc4a},
+        {"rockerarm", 0x98de8db830ed6c87, 0x979d145f9d23a07e},
+        {"gargoyle", 0x88afea098ab9dba9, 0x59199799cc0ce0ce},
+        {"bunny", 0xff046c24a9783a65, 0x390a54e53a9bef7f},
+        {"bust", 0x1bf7db595ee7f824, 0x35328c7b5e2171f0},
         {"block", 0x5fb2af01487556fc, 0xfed019a248a48e27},
         {"beam", 0xf56852dcdcc37bc8, 0x555874870a66497a},
         {"bar", 0x923b81b254f57595, 0xfecb6db755e068d9},

@@ -1,0 +1,222 @@
+/* The engine shell behind engine.h: rest, falling, pushes, handles, states, and what it refuses. */
+#include "../../lib/test_fields.h"
+#include "../../lib/test_frame.h"
+#include "../../lib/vector.h"
+#include "../../lib/voxel/voxelise.h"
+#include "shell_engine.h"
+#include "test_solver.h"
+
+enum { AROUND = 48, ACROSS = 24, VERTICES = AROUND * ACROSS };
+
+static const SmEngineType *const type = &ref_shell_engine;
+
+typedef struct {
+    SmMesh mesh;
+    SmVoxels voxels;
+    RefMeshlessOptions options;
+    SmEngineParams params;
+} Scene;
+
+/* A ring around y with a bulge, 1 across. */
+static Scene ring_create(void)
+{
+    Scene scene = {.mesh = sm_mesh_new(VERTICES, 2L * VERTICES),
+                   .options = {.nodes = 120, .thickness = 0.01, .material = {1e6, 0.3, 1000}},
+                   .params = {.w = 1, .h = 0.01}};
+    SmVoxelParams shell = {.fill = SM_SHELL, .particles = 400};
+    for (int v = 0; v < VERTICES; v++) {
+        double a = 2 * M_PI * (v % AROUND) / AROUND, b = 2 * M_PI * (v / AROUND) / ACROSS;
+        double r = 0.13 * (1 + 0.2 * cos(a)), *x = scene.mesh.position[v];
+        x[0] = (0.35 + r * cos(b)) * cos(a);
+        x[1] = r * sin(b);
+        x[2] = -(0.35 + r * cos(b)) * sin(a);
+        int right = v / AROUND * AROUND + (v + 1) % AROUND, up = (v + AROUND) % VERTICES;
+        int corner = right / AROUND == ACROSS - 1 ? right % AROUND : right + AROUND;
+        int triangle[2][3] = {{v, right, corner}, {v, corner, up}};
+        memcpy(scene.mesh.triangle[2 * v], triangle, sizeof triangle);
+    }
+    assert_int_equal(sm_voxelise(&scene.mesh, &shell, "ring", &scene.voxels, NULL), SM_OK);
+    return scene;
+}
+
+static SmCode create(Scene *scene, SmEngine **engine, SmError *error)
+{
+    scene->options.mesh = &scene->mesh;
+    scene->params.meshless = &scene->options;
+    return type->create(&scene->voxels, &scene->params, engine, error);
+}
+
+static SmEngine *engine_of(Scene *scene)
+{
+    SmEngine *engine;
+    SmError error;
+    if (create(scene, &engine, &error) != SM_OK) fail_msg("%s", error.text);
+    return engine;
+}
+
+static void scene_free(Scene *scene, SmEngine *engine)
+{
+    type->destroy(engine);
+    sm_mesh_free(&scene->mesh);
+    sm_voxels_free(&scene->voxels);
+}
+
+/* Vertices whose x is beyond a bound, on that side. */
+static SmHandle handle_beyond(const Scene *scene, double bound, long *particle)
+{
+    SmHandle handle = {.particle = particle};
+    for (int d = 0; d < 3; d++) handle.pose[d][d] = 1;
+    for (long v = 0; v < VERTICES; v++)
+        if (scene->mesh.position[v][0] * bound > bound * bound) particle[handle.count++] = v;
+    assert_true(handle.count > 10);
+    return handle;
+}
+
+TEST(it_rests_where_it_was_made)
+{
+    needs_solver();
+    Scene scene = ring_create();
+    SmEngine *engine = engine_of(&scene);
+    static double x[VERTICES][3];
+    double mass[VERTICES], all = 0, area = 0;
+    SmCounts counts;
+    for (int step = 0; step < 5; step++) type->step(engine, NULL);
+    type->get(engine, SM_POSITION, x);
+    for (int v = 0; v < VERTICES; v++)
+        for (int d = 0; d < 3; d++) assert_true(fabs(x[v][d] - scene.mesh.position[v][d]) < 1e-9);
+    type->count(engine, &counts);
+    assert_int_equal(counts.particles, VERTICES);
+    assert_true(counts.regions > 90 && counts.regions < 160);
+    type->masses(engine, mass);
+    for (int v = 0; v < VERTICES; v++) all += mass[v];
+    for (long t = 0; t < scene.mesh.triangle_count; t++) {
+        const int *c = scene.mesh.triangle[t];
+        double u[3], v[3], n[3];
+        sm_subtract(scene.mesh.position[c[1]], scene.mesh.position[c[0]], u);
+        sm_subtract(scene.mesh.position[c[2]], scene.mesh.position[c[0]], v);
+        sm_cross(u, v, n);
+        area += sqrt(sm_dot(n, n)) / 2;
+    }
+    assert_true(fabs(all / (1000 * 0.01 * area) - 1) < 0.04); /* of a surface that is fitted */
+    scene_free(&scene, engine);
+}
+
+/* Free, it falls, and a push on one vertex is its momentum. */
+TEST(it_falls_and_is_pushed)
+{
+    needs_solver();
+    Scene scene = ring_create();
+    scene.params.gravity[1] = -9.81;
+    SmEngine *engine = engine_of(&scene);
+    static double x[VERTICES][3], v[VERTICES][3];
+    double mass[VERTICES], speed[3] = {0}, all = 0;
+    const long where = 17;
+    const double impulse[1][3] = {{0.3, 0, 0.1}};
+    type->push(engine, 1, &where, impulse);
+    for (int step = 0; step < 20; step++) type->step(engine, NULL);
+    const RefShellBody *body = ref_shell_body(engine);
+    for (long n = 0; n < body->sheet.warp.nodes; n++)
+        for (int d = 0; d < 3; d++)
+            speed[d] += body->sheet.warp.mass[n] * body->sheet.steps.v[3 * n + d];
+    type->masses(engine, mass);
+    for (int p = 0; p < VERTICES; p++) all += mass[p];
+    assert_true(fabs(speed[1] + 9.81 * 0.2) < 1e-9);
+    assert_true(fabs(speed[0] * all - 0.3) < 1e-6 && fabs(speed[2] * all - 0.1) < 1e-6);
+    type->get(engine, SM_POSITION, x);
+    type->get(engine, SM_VELOCITY, v);
+    for (int p = 0; p < VERTICES; p++) assert_true(isfinite(x[p][0]) && fabs(v[p][1] + 1.96) < 1);
+    scene_free(&scene, engine);
+}
+
+/* Held at both ends, one of which turns by 90 degrees about the axis between them; states come back
+ * to what follows them; let go, it goes on. */
+TEST(handles_hold_and_turn)
+{
+    needs_solver();
+    Scene scene = ring_create();
+    scene.params.damping = 0.05;
+    SmEngine *engine = engine_of(&scene);
+    static long left[VERTICES], right[VERTICES];
+    static double x[2][VERTICES][3], rest[VERTICES][3];
+    SmHandle handle[2] = {handle_beyond(&scene, -0.42, left), handle_beyond(&scene, 0.44, right)};
+    SmBoundary boundary = {2, handle, 0, NULL};
+    RefSheet *sheet = &ref_shell_body(engine)->sheet;
+    for (int step = 1; step <= 60; step++) {
+        double angle = fmin(step / 50.0, 1) * M_PI / 2;
+        handle[1].pose[1][1] = handle[1].pose[2][2] = cos(angle);
+        handle[1].pose[2][1] = sin(angle);
+        handle[1].pose[1][2] = -sin(angle);
+        type->bound(engine, &boundary);
+        type->step(engine, NULL);
+        for (int k = 0; k < 2; k++) {
+            double place, turn;
+            ref_sheet_off(sheet, k, &place, &turn);
+            assert_true(place < 1e-6 && turn < 1e-6);
+        }
+    }
+    type->get(engine, SM_REST, rest);
+    type->get(engine, SM_POSITION, x[0]);
+    for (int k = 0; k < 2; k++)
+        for (long p = 0; p < handle[k].count; p++) {
+            double wanted[3], *at = x[0][handle[k].particle[p]];
+            sm_pose_apply((const double(*)[4])handle[k].pose, rest[handle[k].particle[p]], wanted);
+            for (int d = 0; d < 3; d++) assert_true(fabs(at[d] - wanted[d]) < 0.03);
+        }
+    double *kept = sm_alloc((size_t)type->get_state(engine, NULL), sizeof *kept);
+    type->get_state(engine, kept);
+    for (int round = 0; round < 2; round++) {
+        type->set_state(engine, kept);
+        for (int step = 0; step < 3; step++) type->step(engine, NULL);
+        type->get(engine, SM_POSITION, x[round]);
+    }
+    assert_memory_equal(x[0], x[1], sizeof x[0]);
+    boundary.handle_count = 0;
+    type->bound(engine, &boundary);
+    type->get(engine, SM_POSITION, x[0]);
+    for (int p = 0; p < VERTICES; p++)
+        for (int d = 0; d < 3; d++) assert_true(fabs(x[0][p][d] - x[1][p][d]) < 1e-3);
+    for (int step = 0; step < 30; step++) type->step(engine, NULL);
+    type->get(engine, SM_POSITION, x[0]);
+    for (int p = 0; p < VERTICES; p++) assert_true(sm_dot(x[0][p], x[0][p]) < 4);
+    free(kept);
+    scene_free(&scene, engine);
+}
+
+/* A handle of one vertex moves its place and lets it turn. */
+TEST(one_vertex_is_pulled)
+{
+    needs_solver();
+    Scene scene = ring_create();
+    scene.params.damping = 0.05;
+    SmEngine *engine = engine_of(&scene);
+    static long left[VERTICES], one[1];
+    static double x[VERTICES][3];
+    for (long v = 0; v < VERTICES; v++)
+        if (scene.mesh.position[v][0] > scene.mesh.position[*one][0]) *one = v;
+    SmHandle handle[2] = {handle_beyond(&scene, -0.42, left), {.count = 1, .particle = one}};
+    for (int d = 0; d < 3; d++) handle[1].pose[d][d] = 1;
+    SmBoundary boundary = {2, handle, 0, NULL};
+    for (int step = 1; step <= 50; step++) {
+        handle[1].pose[1][3] = 0.1 * step / 50;
+        type->bound(engine, &boundary);
+        type->step(engine, NULL);
+    }
+    type->get(engine, SM_POSITION, x);
+    assert_true(fabs(x[*one][1] - scene.mesh.position[*one][1] - 0.1) < 0.01);
+    scene_free(&scene, engine);
+}
+
+TEST(what_it_refuses)
+{
+    needs_solver();
+    Scene scene = ring_create();
+    SmEngine *engine = NULL;
+    SmError error;
+    scene.options.material.poisson = 0.6;
+    assert_int_equal(create(&scene, &engine, &error), SM_USAGE);
+    assert_non_null(strstr(error.text, "Poisson"));
+    scene.options.material.poisson = 0.3;
+    scene.params.strain_limit = 1.5;
+    assert_int_equal(create(&scene, &engine, &error), SM_INPUT);
+    scene_free(&scene, NULL);
+}
