@@ -122,7 +122,7 @@ static double (*nodes_back(const BenchRunner *runner, double back))[3]
 
 void bench_group_surface(BenchGroup *group, double back, double (*point)[3])
 {
-    if (group->body.given) {
+    if (group->body.given && !group->runner.type->vertices) {
         ref_meshless_points(group->runner.engine, point);
         return;
     }

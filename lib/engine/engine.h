@@ -112,7 +112,7 @@ typedef struct {
     bool by_cells;         /* params.w is the half-width of its regions, to SM_MOST_W */
     bool unstopped;        /* obstacles do not stop its bodies: callers refuse them */
     bool refines;          /* particles are split, merged and cut while it runs (octree/engine.h) */
-    bool vertices;         /* its particles are the mesh's vertices, on the body's surface */
+    bool vertices;         /* its particles are the surface's vertices or points */
     bool weighs_regions;   /* a region's misfit counts by its own particle's mass, not by 1 */
     const SmStages *stages; /* NULL: those of shape matching (stage.h) */
 

@@ -51,11 +51,26 @@ static void carry(SmEngine *engine)
                    body->carried);
 }
 
+/* The particles, and their map: the points that were given, or the mesh's vertices. */
+static SmCode map_surface(const RefMeshlessOptions *options, SmEngine *engine, SmError *error)
+{
+    const RefPoints *points = options->given ? &options->given->points : NULL;
+    const SmMesh *mesh = options->mesh;
+    engine->count = points ? points->given : mesh->vertex_count;
+    engine->rest = sm_alloc((size_t)engine->count, sizeof *engine->rest);
+    memcpy(engine->rest, points ? points->as_given : mesh->position,
+           (size_t)engine->count * sizeof *engine->rest);
+    return points ? ref_surface_map_of_points(engine->count, CONST(engine->rest), NULL,
+                                              "the points", &engine->body.map, error)
+                  : ref_surface_map_create(mesh, "the mesh", &engine->body.map, error);
+}
+
 static SmCode make_sheet(const SmEngineParams *params, SmEngine *engine, SmError *error)
 {
     const RefMeshlessOptions *options = params->meshless;
-    const SmMesh *mesh = options->mesh;
-    SmBox box = sm_box_around(mesh->vertex_count, CONST(mesh->position));
+    SmCode code = map_surface(options, engine, error);
+    if (code != SM_OK) return code;
+    SmBox box = sm_box_around(engine->count, CONST(engine->rest));
     RefSheetOptions sheet = {
         .shell = {.across = 1,
                   .nodes = options->nodes > 0 ? options->nodes : REF_SHELL_NODES,
@@ -67,25 +82,20 @@ static SmCode make_sheet(const SmEngineParams *params, SmEngine *engine, SmError
                     options->stiffness_damping},
         .h = params->h};
     memcpy(sheet.gravity, params->gravity, sizeof sheet.gravity);
-    SmCode code = ref_surface_map_create(mesh, "the mesh", &engine->body.map, error);
-    if (code != SM_OK) return code;
     double start = sm_now();
     code = ref_sheet_create(&engine->body.map.chart, &sheet, &engine->body.sheet, error);
     engine->body.matrix_seconds = sm_now() - start;
     return code;
 }
 
-static void make_particles(const SmMesh *mesh, SmEngine *engine)
+static void make_particles(SmEngine *engine)
 {
     RefShellBody *body = &engine->body;
-    size_t count = (size_t)mesh->vertex_count;
+    size_t count = (size_t)engine->count;
     double start = sm_now(), mass = 0;
-    engine->count = mesh->vertex_count;
-    engine->rest = sm_alloc(count, sizeof *engine->rest);
     engine->before = sm_alloc(count, sizeof *engine->before);
     engine->place = sm_alloc(count, sizeof *engine->place);
     body->carried = sm_alloc(count, sizeof *body->carried);
-    memcpy(engine->rest, mesh->position, count * sizeof *engine->rest);
     ref_foot_skin(&body->sheet.shell, &body->sheet.warp, engine->count,
                   (const double(*)[2])body->map.theta, CONST(engine->rest), &body->skin,
                   &body->loose);
@@ -112,7 +122,7 @@ static SmCode shell_create(const SmVoxels *voxels, const SmEngineParams *params,
         shell_destroy(engine);
         return code;
     }
-    make_particles(params->meshless->mesh, engine);
+    make_particles(engine);
     *result = engine;
     return SM_OK;
 }

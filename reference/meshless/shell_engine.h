@@ -3,9 +3,9 @@
  *
  * The body is its surface: a closed one, one with rims, or a plate. It is mapped to a rectangle of
  * conformal parameters (map/surface_map.h), which says what surfaces can be; nodes are put there,
- * and what is simulated moves as sheet.h says. Its particles are the mesh's vertices, carried; the
- * lattice plays no part; w, summation, polar and layout mean nothing. create() refuses what the
- * meshless engine refuses. Its state is get_state()'s, and set() is NULL.
+ * and what is simulated moves as sheet.h says. Its particles are the mesh's vertices, or the points
+ * that were given, carried; the lattice plays no part; w, summation, polar and layout mean nothing.
+ * create() refuses what the meshless engine refuses. Its state is get_state()'s, and set() is NULL.
  *
  * A handle holds the surface at some of its particles, apart from each other by a cell at least,
  * and turns its tangents in their middle; one whose particles are all in a line holds places alone.
