@@ -53,33 +53,45 @@ static void sum_parts(const RefWarp *warp, const RefShape *shape, double place[3
     }
 }
 
-/* Newton's steps for offsets o along the two parameters and up the normal; false where they do not
- * meet x within `reach` of the place. */
-static bool find_foot(const double place[3][3], const double normal[3][3], const double x[3],
-                      double reach, double o[3])
+/* One of Newton's steps for offsets o along the two parameters and up the normal; returns how far
+ * they were off. */
+static double step(const double place[3][3], const double normal[3][3], const double x[3],
+                   double o[3])
 {
-    double far = 0;
-    memset(o, 0, 3 * sizeof *o);
-    for (int step = 0; step < MOST_STEPS; step++) {
-        double slope[3][3], off[3], left[9] = {0}, right[3] = {0};
-        for (int d = 0; d < 3; d++) {
-            for (int k = 0; k < 2; k++) slope[k][d] = place[1 + k][d] + o[2] * normal[1 + k][d];
-            slope[2][d] = normal[0][d] + o[0] * normal[1][d] + o[1] * normal[2][d];
-            off[d] =
-                x[d] - place[0][d] - o[0] * place[1][d] - o[1] * place[2][d] - o[2] * slope[2][d];
-        }
-        for (int d = 0; d < 3; d++) {
-            double row[3] = {slope[0][d], slope[1][d], slope[2][d]};
-            ref_least_squares_add(3, row, off[d], 1, left, right);
-        }
-        ref_least_squares_solve(3, 0, left, right);
-        for (int k = 0; k < 3; k++) o[k] += right[k];
-        far = sqrt(sm_dot(off, off));
-        double side[3];
-        for (int d = 0; d < 3; d++) side[d] = o[0] * place[1][d] + o[1] * place[2][d];
-        if (!(sm_dot(side, side) < reach * reach && fabs(o[2]) < 10 * reach)) return false;
+    double slope[3][3], off[3], left[9] = {0}, right[3] = {0};
+    for (int d = 0; d < 3; d++) {
+        for (int k = 0; k < 2; k++) slope[k][d] = place[1 + k][d] + o[2] * normal[1 + k][d];
+        slope[2][d] = normal[0][d] + o[0] * normal[1][d] + o[1] * normal[2][d];
+        off[d] = x[d] - place[0][d] - o[0] * place[1][d] - o[1] * place[2][d] - o[2] * slope[2][d];
     }
-    return far < 1e-6 * reach;
+    for (int d = 0; d < 3; d++) {
+        double row[3] = {slope[0][d], slope[1][d], slope[2][d]};
+        ref_least_squares_add(3, row, off[d], 1, left, right);
+    }
+    ref_least_squares_solve(3, 0, left, right);
+    for (int k = 0; k < 3; k++) o[k] += right[k];
+    return sqrt(sm_dot(off, off));
+}
+
+/* How far o leads out of the reach: of a cell's edges along the parameters, and of `height` up. */
+static double beyond(const double o[3], const double edge[2], double height)
+{
+    return fmax(fmax(fabs(o[0]) / edge[0], fabs(o[1]) / edge[1]), fabs(o[2]) / height);
+}
+
+/* The offsets, or where Newton's steps do not find them within reach, those in the frame at the
+ * place: the first step's, so much of them as is. */
+static void find_foot(const double place[3][3], const double normal[3][3], const double x[3],
+                      const double edge[2], double height, double o[3])
+{
+    double first[3] = {0}, off = INFINITY;
+    step(place, normal, x, first);
+    double far = beyond(first, edge, height);
+    for (int k = 0; k < 3 && far > 1; k++) first[k] /= far;
+    memcpy(o, first, sizeof first);
+    for (int n = 0; n < MOST_STEPS && beyond(o, edge, height) <= 1; n++)
+        off = step(place, normal, x, o);
+    if (!(off < 1e-6 * height && beyond(o, edge, height) <= 1)) memcpy(o, first, sizeof first);
 }
 
 bool ref_foot_at(const RefShell *shell, const RefWarp *warp, const double theta[2],
@@ -93,9 +105,8 @@ bool ref_foot_at(const RefShell *shell, const RefWarp *warp, const double theta[
     sum_parts(warp, shape, place, normal);
     ref_quadtree_cell(tree, tree->cell + ref_quadtree_at(tree, theta), middle, edge);
     double length = sqrt(sqrt(sm_dot(place[1], place[1]) * sm_dot(place[2], place[2])));
-    if (!find_foot((const double(*)[3])place, (const double(*)[3])normal, x,
-                   length * fmax(edge[0], edge[1]), o))
-        return true;
+    find_foot((const double(*)[3])place, (const double(*)[3])normal, x, edge,
+              2 * length * fmax(edge[0], edge[1]), o);
     *lift = o[2];
     for (int n = 0; n < shape->count; n++)
         shape->value[n] += o[0] * shape->gradient[n][0] + o[1] * shape->gradient[n][1];

@@ -9,8 +9,9 @@
 /* The skin of points at rest, [count], whose parameters are near `theta`. A foot is where the line
  * along the normal that the nodes' normals make, sum phi_I a3_I, comes through the point: in the
  * tangent plane at theta, phi_I + o_k phi_I,k in phi_I's place. So a rigid motion of the surface
- * carries points with it. Those of which it is not found nearby, within a cell's length, keep their
- * whole offset as it is. The warp is the shell's. `loose` as in skin.h. */
+ * carries points with it. Those of which it is not found nearby, within a cell's length, turn with
+ * the frame at theta, but for what its normal's slopes would make of that. The warp is the shell's.
+ * `loose` as in skin.h. */
 void ref_foot_skin(const RefShell *shell, const RefWarp *warp, long count, const double (*theta)[2],
                    const double (*x)[3], RefSkin *skin, long *loose);
 
