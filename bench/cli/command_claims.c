@@ -15,7 +15,7 @@ typedef struct {
     bool quick;
 } Options;
 
-static const char *const papers[] = {"fastlsm", "octree", NULL};
+static const char *const papers[] = {"fastlsm", "octree", "meshless", NULL};
 
 static const char *const *paper_words(void)
 {
@@ -35,7 +35,7 @@ static const char *const *claim_words(void)
 }
 
 static const BenchSetting settings[] = {
-    {BENCH_MEASURE("paper", "NAME", 1, "The claims of this paper only: fastlsm, octree"),
+    {BENCH_MEASURE("paper", "NAME", 1, "The claims of this paper only: fastlsm, octree, meshless"),
      BENCH_IN(Options, paper), .offers = paper_words},
     {BENCH_MEASURE("claim", "NAME", 1, "This claim only; may be repeated (see --list)"),
      BENCH_IN(Options, claims), .offers = claim_words},

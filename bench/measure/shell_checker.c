@@ -14,7 +14,7 @@ void bench_shell_row_fill(const BenchRunner *runner, BenchRow *row)
     row->goal_error = row->momentum_error = row->goal_tolerance = NAN;
     row->voxelise_seconds = 0;
     row->elastic = (BenchElasticRow){.nodes = body->sheet.warp.nodes,
-                                     .last_nodes = body->sheet.warp.nodes,
+                                     .end_nodes = body->sheet.warp.nodes,
                                      .map_seconds = body->map.seconds,
                                      .angle = body->map.angle_median,
                                      .matrix_seconds = body->matrix_seconds,

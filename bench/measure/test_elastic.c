@@ -325,7 +325,7 @@ TEST(its_row_is_a_table_of_its_own)
     assert_non_null(strstr(text, "\\begin{tabular}"));
     write_row(&row, BENCH_AS_CSV, text, sizeof text);
     assert_non_null(strstr(text, ",nodes,modes,matrices_s,modes_s,"));
-    assert_non_null(strstr(text, ",motion_ms,skin_ms,parameters_s,last_nodes\n"));
+    assert_non_null(strstr(text, ",motion_ms,skin_ms,parameters_s,end_nodes\n"));
     assert_non_null(strstr(text, ",,,,,")); /* it has no stages of shape matching */
     write_row(&row, BENCH_AS_JSON, text, sizeof text);
     assert_non_null(strstr(text, "\"matrices_s\""));
