@@ -46,6 +46,7 @@ SMALL = {
 }
 ELASTIC = {"--nodes": "100", "--modes": "8", "--points": "4000"}  # of these scenes, and of the engine meshless
 ELASTIC_SCENES = {"beam-elastic", "balljoint", "rabbit", "santa", "meshless"}
+SHELLS = {"rockerarm", "gargoyle", "bunny", "shell"}
 LIGHT = {"fastlsm": "penguin", "octree": "hand-sampled", "meshless": "beam-elastic"}
 
 
@@ -94,6 +95,8 @@ def small(arguments):
         wanted = {}  # a question to a stored one
     if command == "run" and ELASTIC_SCENES.intersection(arguments):
         wanted.update({} if "POINTS.xyz" in arguments else ELASTIC, **{"--nodes": "100", "--modes": "8"})
+    if command == "run" and SHELLS.intersection(arguments):
+        wanted["--nodes"] = "100"
     if command == "tables":
         arguments = [re.sub("^hand(?=$|=)", LIGHT["octree"], word) for word in arguments]
         scene = arguments[arguments.index("--scene") + 1] if "--scene" in arguments else ""

@@ -150,7 +150,7 @@ static void bind_row(const RefRows *rows, long row, long less, RefRows *bound)
 static RefRows bind_rows(const RefRows *rows, const RefSheetHold *hold, int holds)
 {
     RefRows bound = {0};
-    for (int k = 0; k < holds; k++) {
+    for (int k = 0; rows->start && k < holds; k++) {
         long first = hold[k].row, count = hold[k].points + (hold[k].loose ? 0 : 2);
         for (long r = k == 0 ? 0 : 1; r < count; r++)
             bind_row(rows, first + r, k > 0 && r < hold[k].points ? first : -1, &bound);
