@@ -6,6 +6,7 @@
 
 #include "../../lib/box.h"
 #include "../../lib/vector.h"
+#include "../../reference/meshless/body/gauss_rule.h"
 #include "../../reference/meshless/shell/foot.h"
 #include "../../reference/meshless/solve/least_squares.h"
 #include "../play/runner.h"
