@@ -480,13 +480,35 @@ static void engine_step(SmEngine *e, SmLaps *laps)
     sm_lap(laps, SM_OTHER);
 }
 
+static SmCode check_breakable(const SmEngine *e, SmError *error)
+{
+    if (e->lsm->params.strain_limit > 0) return SM_OK;
+    return sm_fail(error, SM_USAGE,
+                   "cut: the body was not made to be cut; create it with a strain_limit, "
+                   "INFINITY if it is to break in no other way");
+}
+
 static SmCode engine_cut(SmEngine *e, const SmCut *cut, long first, SmError *error)
 {
-    if (!(e->lsm->params.strain_limit > 0))
-        return sm_fail(error, SM_USAGE,
-                       "cut: the body was not made to be cut; create it with a strain_limit, "
-                       "INFINITY if it is to break in no other way");
-    lsm_cut(e->lsm, e->turn, cut, first);
+    SmCode code = check_breakable(e, error);
+    if (!code) lsm_cut(e->lsm, e->turn, cut, first);
+    return code;
+}
+
+static SmCode engine_break_links(SmEngine *e, long count, const int (*pair)[2], SmError *error)
+{
+    const LsmLattice *l = &e->lsm->lattice;
+    SmCode code = check_breakable(e, error);
+    if (code || count == 0) return code;
+    LsmLink *link = sm_alloc((size_t)count, sizeof *link);
+    for (long n = 0; n < count; n++) {
+        long p = inner_of(e, pair[n][0]), q = inner_of(e, pair[n][1]);
+        int bit = LSM_SELF, stride[3] = {1, 3, 9};
+        for (int d = 0; d < 3; d++) bit += stride[d] * (l->coord[q][d] - l->coord[p][d]);
+        link[n] = (LsmLink){(int)p, bit};
+    }
+    lsm_break(e->lsm, count, link);
+    free(link);
     return SM_OK;
 }
 
@@ -706,6 +728,7 @@ const SmEngineType SM_NAME(fastlsm_engine) = {
     .masses = engine_masses,
     .count = engine_count,
     .cut = engine_cut,
+    .break_links = engine_break_links,
     .contacts = engine_contacts,
     .pieces = engine_pieces,
     .region = engine_region,

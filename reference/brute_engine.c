@@ -175,6 +175,22 @@ static double distance(const double a[3], const double b[3])
     return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
 }
 
+static void add_broken(Body *body, int p, int q)
+{
+    body->broken = sm_realloc(body->broken, (size_t)body->broken_count + 1, sizeof *body->broken);
+    body->broken[body->broken_count][0] = p;
+    body->broken[body->broken_count++][1] = q;
+}
+
+static void rebuild_body(const SmEngine *engine, Body *body)
+{
+    ref_links_free(&body->links);
+    ref_regions_free(&body->regions);
+    ref_links_build(&engine->voxels, (const int(*)[2])body->broken, body->broken_count,
+                    &body->links);
+    ref_regions_reach(&body->links, engine->params.w, &body->regions);
+}
+
 /* Breaks every link stretched beyond the strain limit (fastlsm section 4), then builds all regions
  * anew. m~ follows by itself: it is formed from |R_i| in every sum. */
 static void fracture_body(const SmEngine *engine, Body *body)
@@ -186,17 +202,9 @@ static void fracture_body(const SmEngine *engine, Body *body)
             double rest = distance(body->x0[p], body->x0[q]);
             if (q < p || !(distance(body->x[p], body->x[q]) > engine->params.strain_limit * rest))
                 continue;
-            body->broken =
-                sm_realloc(body->broken, (size_t)body->broken_count + 1, sizeof *body->broken);
-            body->broken[body->broken_count][0] = p;
-            body->broken[body->broken_count++][1] = q;
+            add_broken(body, p, q);
         }
-    if (body->broken_count == before) return;
-    ref_links_free(&body->links);
-    ref_regions_free(&body->regions);
-    ref_links_build(&engine->voxels, (const int(*)[2])body->broken, body->broken_count,
-                    &body->links);
-    ref_regions_reach(&body->links, engine->params.w, &body->regions);
+    if (body->broken_count > before) rebuild_body(engine, body);
 }
 
 static void brute_step(SmEngine *engine, SmLaps *laps)
@@ -312,6 +320,33 @@ static long brute_region(SmEngine *engine, long p, long *member, long room)
     return size;
 }
 
+/* Of every instance: where bodies have broken otherwise, links() are the first one's. */
+static SmCode brute_break_links(SmEngine *engine, long count, const int (*pair)[2], SmError *error)
+{
+    (void)error;
+    for (long b = 0; b < engine->params.instances; b++) {
+        Body *body = engine->body + b;
+        for (long n = 0; n < count; n++)
+            if (ref_linked(&body->links, pair[n][0], pair[n][1]))
+                add_broken(body, pair[n][0], pair[n][1]);
+        rebuild_body(engine, body);
+    }
+    return SM_OK;
+}
+
+static long brute_links(SmEngine *engine, int (*link)[2], long room)
+{
+    const RefLinks *links = &engine->body->links;
+    long count = 0;
+    for (int p = 0; p < links->count && room > 0; p++)
+        for (long n = links->start[p]; n < links->start[p + 1] && count < room; n++) {
+            if (links->neighbour[n] < p) continue;
+            link[count][0] = p;
+            link[count++][1] = links->neighbour[n];
+        }
+    return links->start[links->count] / 2;
+}
+
 const SmEngineType ref_brute_engine = {
     .name = "brute",
     .precision = "double",
@@ -326,5 +361,7 @@ const SmEngineType ref_brute_engine = {
     .bound = brute_bound,
     .masses = brute_masses,
     .count = brute_count,
+    .break_links = brute_break_links,
     .region = brute_region,
+    .links = brute_links,
 };

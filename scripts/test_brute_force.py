@@ -20,7 +20,8 @@ except ImportError as missing:
     sys.exit(77)
 
 # Settings of scenes that are not recorded: `run --record` must refuse these, and no others.
-NOT_RECORDED = {"cuts": "is cut: regions change", "touches": "is refined: regions change",
+NOT_RECORDED = {"cuts": "is cut: regions change", "strain_limit": "breaks: regions change",
+                "touches": "is refined: regions change",
                 "view": "is refined: regions change",
                 'engine = "meshless"': "steps are of modes, not of particles"}
 ALTERED = (1e-3, float("nan"))  # cells by which one particle's place, velocity or goal is altered

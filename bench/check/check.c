@@ -11,6 +11,7 @@
 #include "../../octree/engine.h"
 #include "../../reference/condition.h"
 #include "../engines.h"
+#include "parted.h"
 
 double bench_check_members(const BenchBody *body, int w)
 {
@@ -48,16 +49,21 @@ const RefRegions *bench_check_regions(const BenchCheck *check)
     return check->hierarchical ? &check->octree.regions : &check->regions;
 }
 
-static void begin_lattice(const BenchScene *scene, const BenchBody *body, const SmEngine *engine,
-                          BenchCheck *check)
+static void begin_lattice(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
+                          SmEngine *engine, BenchCheck *check)
 {
-    (void)engine;
-    bench_check_create(body, scene->params.w, check);
+    long parted = 0;
+    int(*pair)[2] = NULL;
+    if (bench_engine_params(scene, body, 1).strain_limit > 0)
+        pair = bench_parted(body, type, engine, &parted);
+    bench_check_create(body, scene->params.w, parted, pair, check);
+    if (body->cut) check->parted_wrong = bench_parted_wrong(body, parted, pair);
 }
 
-static void begin_tree(const BenchScene *scene, const BenchBody *body, const SmEngine *engine,
-                       BenchCheck *check)
+static void begin_tree(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
+                       SmEngine *engine, BenchCheck *check)
 {
+    (void)type;
     const OctStructure *structure = oct_engine_structure(engine);
     *check = (BenchCheck){.body = body,
                           .count = structure->tree.live,
@@ -89,41 +95,17 @@ double bench_twin_members(const BenchRunner *runner)
 }
 
 void bench_check_begin(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
-                       const SmEngine *engine, BenchCheck *check)
+                       SmEngine *engine, BenchCheck *check)
 {
-    bench_engine(type->name)->twin->begin(scene, body, engine, check);
+    bench_engine(type->name)->twin->begin(scene, body, type, engine, check);
 }
 
-int (*bench_check_parted(const BenchBody *body, long *count))[2]
-{
-    int(*pair)[2] = NULL;
-    RefLinks links;
-    long room = 0;
-    *count = 0;
-    ref_links_build(&body->voxels, NULL, 0, &links);
-    for (int p = 0; p < links.count; p++)
-        for (long n = links.start[p]; n < links.start[p + 1]; n++) {
-            int q = links.neighbour[n];
-            if (q < p || !sm_cut_crosses(body->cut, 0, body->x0[p], body->x0[q])) continue;
-            if (*count == room) {
-                room = 2 * room + 256;
-                pair = sm_realloc(pair, (size_t)room, sizeof *pair);
-            }
-            pair[*count][0] = p;
-            pair[(*count)++][1] = q;
-        }
-    ref_links_free(&links);
-    return pair;
-}
-
-void bench_check_create(const BenchBody *body, int w, BenchCheck *check)
+void bench_check_create(const BenchBody *body, int w, long parted, int (*pair)[2],
+                        BenchCheck *check)
 {
     long count = body->voxels.particle_count;
-    *check = (BenchCheck){.body = body, .count = count};
-    long parted = 0;
-    int(*pair)[2] = body->cut ? bench_check_parted(body, &parted) : NULL;
+    *check = (BenchCheck){.body = body, .count = count, .parted = parted, .pair = pair};
     ref_regions_build(&body->voxels, w, (const int(*)[2])pair, parted, &check->regions);
-    free(pair);
     check->unique = ref_regions_unique(&check->regions);
     check->mass = sm_alloc((size_t)count, sizeof *check->mass);
     check->weight = sm_alloc((size_t)count, sizeof *check->weight);
@@ -142,9 +124,7 @@ void bench_check_free(BenchCheck *check)
         ref_tree_free(&check->octree);
     else
         ref_regions_free(&check->regions);
-    free(check->mass);
-    free(check->weight);
-    free(check->rest);
+    sm_free_all(check->mass, check->weight, check->rest, check->pair);
     *check = (BenchCheck){0};
 }
 
@@ -299,6 +279,7 @@ BenchDeviation bench_check_state(const BenchCheck *check, const SmEngineType *ty
     type->get(engine, SM_VELOCITY, v);
     type->get(engine, SM_GOAL, g);
     BenchDeviation result = {.particles = all,
+                             .parted_wrong = check->parted_wrong,
                              .goal_tolerance = bench_check_tolerance(type->precision),
                              .plain = check->plain,
                              .finite = all_finite((const double(*)[3])x, all) &&
@@ -395,6 +376,9 @@ bool bench_check_verdict(const BenchDeviation *found, size_t size, char *reason)
 {
     if (!found->finite)
         snprintf(reason, size, "positions, velocities or goals are not finite");
+    else if (found->parted_wrong > 0)
+        snprintf(reason, size, "%ld links are broken that were not cut, or were cut and are not",
+                 found->parted_wrong);
     else if (!(found->goal_error <= found->goal_tolerance))
         snprintf(reason, size, "goals are %.3g cells from brute force; at most %g allowed",
                  found->goal_error, found->goal_tolerance);
@@ -440,6 +424,7 @@ void bench_check_merge(const BenchDeviation *found, BenchDeviation *worst)
     worst->obstacles |= found->obstacles;
     worst->pushed += found->pushed;
     worst->pushed_wrong += found->pushed_wrong;
+    worst->parted_wrong += found->parted_wrong;
     worst->contacts += found->contacts;
     worst->contacts_wrong += found->contacts_wrong;
     worst->motion_error = fmax(worst->motion_error, found->motion_error);

@@ -19,7 +19,10 @@ typedef struct {
     double (*rest)[3];     /* [count] rest positions, in cells */
     bool hierarchical;     /* an octree's */
     bool plain;            /* its weighting: momentum is measured, but need not be kept */
-    RefRegions regions;    /* of a lattice */
+    RefRegions regions;    /* of a lattice, */
+    long parted;           /* and of its links those that are broken, */
+    int (*pair)[2];        /* [parted]; */
+    long parted_wrong;     /* of these and those that were cut, what is only one of both */
     RefTreeBody octree;
 } BenchCheck;
 
@@ -29,6 +32,8 @@ typedef struct {
     long steps;     /* that it was left alone; 0: not tried */
     double linear;  /* change of its centre's velocity: cells a step, each step */
     double angular; /* of its angular momentum over sum m r^2: radians a step, each step */
+    double apart;   /* how many times as wide it becomes, of a body in pieces, which fly apart; 1 of
+                     * others */
 } BenchDrift;
 
 /* What was found, of all instances. */
@@ -59,6 +64,7 @@ typedef struct {
     bool obstacles;          /* a step against obstacles was compared: */
     long pushed;             /* particles that brute force pushes out of them, */
     long pushed_wrong;       /* and all that end it otherwise */
+    long parted_wrong;       /* links of a lattice that are broken but not cut, or the other way */
 } BenchDeviation;
 
 /* Region members that a check of this body would hold in memory, at most; 4 bytes each. Beyond
@@ -71,8 +77,8 @@ double bench_check_members(const BenchBody *body, int w);
  * `members` says how many region members that holds in memory. */
 typedef struct BenchTwin {
     double (*members)(const BenchScene *scene, const BenchBody *body, const SmEngine *engine);
-    void (*begin)(const BenchScene *scene, const BenchBody *body, const SmEngine *engine,
-                  BenchCheck *check);
+    void (*begin)(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
+                  SmEngine *engine, BenchCheck *check);
 } BenchTwin;
 
 extern const BenchTwin bench_lattice_twin, bench_octree_twin;
@@ -80,12 +86,14 @@ extern const BenchTwin bench_lattice_twin, bench_octree_twin;
 /* The members of the engine's twin; INFINITY of an engine that has none. */
 double bench_twin_members(const BenchRunner *runner);
 
-/* Builds the reference's regions for a lattice engine: O(particles (2w+1)^3) time and memory. */
-void bench_check_create(const BenchBody *body, int w, BenchCheck *check);
+/* Builds the reference's regions for a lattice engine, of whose links these pairs are parted
+ * (parted.h), which it takes over: O(particles (2w+1)^3) time and memory. */
+void bench_check_create(const BenchBody *body, int w, long parted, int (*pair)[2],
+                        BenchCheck *check);
 
 /* For any engine on the scene's body that has a twin. */
 void bench_check_begin(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
-                       const SmEngine *engine, BenchCheck *check);
+                       SmEngine *engine, BenchCheck *check);
 void bench_check_free(BenchCheck *check);
 
 /* Calls engine->goals() and compares; the state does not change.
@@ -110,9 +118,6 @@ bool bench_check_keeps(double momentum_error, size_t size, char *reason);
  * identity. */
 void bench_check_turns(const BenchCheck *check, const SmEngineType *type, SmEngine *engine,
                        const double (*x)[3], double (*R)[9]);
-
-/* Pairs of neighbours that the body's cut parts, found one by one; the caller frees. */
-int (*bench_check_parted(const BenchBody *body, long *count))[2];
 
 /* Runs one step of a plastic octree: the largest difference of a component of S from what eq. 10
  * makes of the state before it. Where a stretch is at the yield to within rounding, either side of

@@ -40,11 +40,9 @@ static void describe(const SmEngine *engine, Contacts *c)
         c->rest = c->octree.rest;
         return;
     }
-    long parted = 0;
-    int(*pair)[2] = check->body->cut ? bench_check_parted(check->body, &parted) : NULL;
-    ref_collision_lattice_build(&check->body->voxels, (const int(*)[2])pair, parted, &c->lattice);
+    ref_collision_lattice_build(&check->body->voxels, (const int(*)[2])check->pair, check->parted,
+                                &c->lattice);
     c->rest = c->lattice.rest;
-    free(pair);
 }
 
 static void begin(const BenchCheck *check, const BenchScene *scene, const SmEngineType *type,

@@ -41,7 +41,7 @@ void bench_block_free(BenchBlock *block)
 static bool held_to_brute(const BenchBlock *block, size_t room, char *reason)
 {
     BenchCheck check;
-    bench_check_create(&block->body, block->w, &check);
+    bench_check_create(&block->body, block->w, 0, NULL, &check);
     BenchDeviation found = bench_check_state(&check, block->type, block->engine);
     bench_check_free(&check);
     return bench_check_verdict(&found, room, reason) &&

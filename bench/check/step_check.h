@@ -47,8 +47,9 @@ void bench_check_obstacles(const BenchCheck *check, const BenchScene *scene,
  */
 BenchDrift bench_drift(const BenchRunner *runner);
 
-/* May it be: at most 5e-9 each in "single", 1e-14 in "double" precision? Else `reason` says why
- * not. */
+/* May it be: at most 5e-9 each in "single", 1e-14 in "double" precision, and as many times as much
+ * as pieces fly apart, because places are rounded the more the larger they are? Else `reason` says
+ * why not. */
 bool bench_drift_verdict(const BenchDrift *drift, const char *precision, size_t size, char *reason);
 
 #endif

@@ -61,6 +61,8 @@
  *   "one-plate", plate, whatever region it is of, of those that own any; range `w`.
  * - distances: us for the distances from a leaf of `scene`'s octree to all leaves within so many
  *   finest cells, range `n`, against how many those are.
+ * - breaking: us for a link of a solid cube of n x n x n particles on the lattice to be broken, its
+ *   regions, sums and constants brought up to date with it, against their number; w = 2, range `n`.
  * - left: what is left of `scene`'s deformation, rms cells from the best rigid motion of the rest
  *   shape, after so many frames, range `n`, and as many with nothing that holds, pushes or stops
  *   the body, over the last half of these; damped at every `every`-th step if given; also
@@ -90,6 +92,7 @@ typedef enum {
     BENCH_TRY_PUSHED,
     BENCH_TRY_BODY_SUMS,
     BENCH_TRY_BODY_ADDITIONS,
+    BENCH_TRY_BREAKING,
 } BenchTry;
 
 typedef enum {

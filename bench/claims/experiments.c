@@ -85,6 +85,8 @@ static const Kind kinds[] = {
                            BENCH_SUBSUM_FIELDS, .run = bench_structure_subsums},
     [BENCH_TRY_DISTANCES] = {"distances", "leaves reached", "us/search", "scene|n",
                              .run = bench_structure_distances, .timed = true},
+    [BENCH_TRY_BREAKING] = {"breaking", "particles", "us/link", "n",
+                            .run = bench_structure_breaking, .timed = true},
     [BENCH_TRY_LEFT] = {"left", "frames", "rms distance from the rest shape, cells",
                         "scene|field|without|every|n", "|played|smoothed", .run = bench_rest_left},
     [BENCH_TRY_PUSHED] = {"pushed", "-", NULL, "scene|field|without", BENCH_PUSHED_FIELDS,
@@ -162,9 +164,10 @@ const char *bench_experiment_fault(const BenchMeasure *measure)
         return "the experiment needs w = { from = ...; to = ...; points = ...; }, rising";
     if (takes(kind, "n") && !sound(&measure->n))
         return "the experiment needs n = { from = ...; to = ...; points = ...; }, rising";
-    if (measure->experiment == BENCH_TRY_SIZE && measure->n.from < 4)
+    bool cubes = measure->experiment == BENCH_TRY_SIZE || measure->experiment == BENCH_TRY_BREAKING;
+    if (cubes && measure->n.from < 4)
         return "cubes have four particles a side or more: n.from is at least 4";
-    if (measure->experiment == BENCH_TRY_SIZE && measure->n.to > 128)
+    if (cubes && measure->n.to > 128)
         return "cubes have at most 128 particles a side: n.to is at most 128";
     if (takes(kind, "w") && measure->w.to > BENCH_MOST_W) return "w.to is at most 16";
     if (measure->experiment == BENCH_TRY_BLENDING && measure->n.to > 16)

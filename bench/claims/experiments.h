@@ -51,9 +51,10 @@ double bench_deform_jump(const int size[3], const double (*g)[3]);
  * paper's is made (choices.c). */
 BenchMeasuring bench_choices_regions, bench_choices_growth, bench_choices_placement;
 #define BENCH_REGION_FIELDS "summation_nodes|most_summation|beyond_percent|parts"
+
 /* How sums are made up, and what distances cost (structure_experiments.c). */
 BenchMeasuring bench_structure_additions, bench_structure_body_additions, bench_structure_subsums,
-    bench_structure_distances;
+    bench_structure_distances, bench_structure_breaking;
 
 /* The side of a cube of as many members as a lattice's regions have on average. O(particles w^3).
  */

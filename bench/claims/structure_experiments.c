@@ -260,3 +260,38 @@ SmCode bench_structure_distances(const BenchExperiment *of, SmError *error)
     oct_structure_free(&s);
     return SM_OK;
 }
+
+/* ---- breaking */
+
+/* Links along x in the middle of rows spread over a cube of n^3 particles, one after the other. */
+static SmCode add_breaking(const BenchExperiment *of, int n, int points, SmError *error)
+{
+    const SmEngineType *type;
+    const SmEngineParams params = {.w = 2, .h = 0.01, .strain_limit = INFINITY, .threads = 1};
+    int repeats = bench_lab_repeats(of->lab);
+    double *us = sm_alloc((size_t)repeats, sizeof *us);
+    SmEngine *engine = NULL;
+    SmVoxels cube;
+    sm_voxels_block(&cube, n - 1, n - 1, n - 1, 1);
+    SmCode code = bench_engine_find("fastlsm", "single", &type, error);
+    if (!code) code = type->create(&cube, &params, &engine, error);
+    for (int r = 0; r < repeats && !code; r++) {
+        int row = (int)((r + 0.5) / repeats * n * n), p = row * n + n / 2;
+        double start = sm_now();
+        code = type->break_links(engine, 1, (const int[][2]){{p, p + 1}}, error);
+        us[r] = 1e6 * (sm_now() - start);
+    }
+    if (!code) bench_curve_sample(of->curve, (double)n * n * n, us, repeats, BENCH_LOW, points);
+    if (engine) type->destroy(engine);
+    sm_voxels_free(&cube);
+    free(us);
+    return code;
+}
+
+SmCode bench_structure_breaking(const BenchExperiment *of, SmError *error)
+{
+    int n[BENCH_RANGE_POINTS], count = bench_range_numbers(&of->measure->n, n);
+    SmCode code = SM_OK;
+    for (int c = 0; c < count && !code; c++) code = add_breaking(of, n[c], count, error);
+    return code;
+}

@@ -56,6 +56,7 @@ static void note_changes(const BenchPlayback *play, long frame, Times *times, Be
         resample += last->resample_seconds;
         follow += last->follow_seconds;
         added += last->nodes;
+        if (last->levels > row->most_levels) row->most_levels = last->levels;
         times->changed[frame] |= last->resampled;
     }
     long nodes = bench_playback_particles(play);

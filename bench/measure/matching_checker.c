@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "../check/parted.h"
 #include "../check/runner_check.h"
 #include "../check/step_check.h"
 #include "checker.h"
@@ -30,6 +31,7 @@ static void check_drift(const BenchRunner *runner, BenchDeviation *worst, BenchR
     char reason[sizeof row->reason];
     BenchDrift drift = bench_drift(runner);
     if (drift.steps > worst->drift.steps) worst->drift.steps = drift.steps;
+    worst->drift.apart = fmax(worst->drift.apart, drift.apart);
     row->drift = worst->drift.linear = fmax(worst->drift.linear, drift.linear);
     row->twist = worst->drift.angular = fmax(worst->drift.angular, drift.angular);
     row->drift_steps = worst->drift.steps;
@@ -47,6 +49,17 @@ static void check_flow(const BenchCheck *check, BenchRunner *runner, BenchRow *r
         bench_row_invalidate(row,
                              "rest shapes flow %.3g otherwise than brute force; at most %g allowed",
                              error, row->goal_tolerance);
+}
+
+/* Of a body that breaks by strain: does the step that follows break what it should? */
+static void check_breaks(BenchRunner *runner, BenchRow *row)
+{
+    double limit = runner->scene->params.strain_limit;
+    if (!(limit > 0 && isfinite(limit)) || runner->body->instances > 1) return;
+    long wrong = bench_parted_step_wrong(runner);
+    if (wrong > 0)
+        bench_row_invalidate(row, "a step breaks %ld links that are not too long, or fails to",
+                             wrong);
 }
 
 static void check_counts(const BenchCheck *check, const BenchRunner *runner, BenchRow *row)
@@ -76,6 +89,7 @@ static SmCode check_members(const BenchRunner *runner, SmError *error)
 /* A check of every group of bodies as it is now. */
 typedef struct {
     BenchCheck *group; /* [count] */
+    long *links;       /* [count] that it was made for */
     int count;
 } Checks;
 
@@ -87,17 +101,35 @@ static SmCode accepts(const BenchPlayback *play, SmError *error)
     return code;
 }
 
+static long links_of(const BenchRunner *runner)
+{
+    return runner->type->links ? runner->type->links(runner->engine, NULL, 0) : 0;
+}
+
+static void begin_group(Checks *checks, int g, const BenchRunner *runner)
+{
+    bench_check_begin(runner->scene, runner->body, runner->type, runner->engine, &checks->group[g]);
+    checks->links[g] = links_of(runner);
+}
+
 static void *begin(BenchPlayback *play)
 {
     Checks *checks = sm_alloc(1, sizeof *checks);
     checks->count = play->count;
     checks->group = sm_alloc((size_t)checks->count, sizeof *checks->group);
-    for (int g = 0; g < checks->count; g++) {
-        const BenchRunner *runner = &play->group[g].runner;
-        bench_check_begin(runner->scene, runner->body, runner->type, runner->engine,
-                          &checks->group[g]);
-    }
+    checks->links = sm_alloc((size_t)checks->count, sizeof *checks->links);
+    for (int g = 0; g < checks->count; g++) begin_group(checks, g, &play->group[g].runner);
     return checks;
+}
+
+/* Of bodies that have broken since, by strain, begins anew. */
+static void renew(Checks *checks, const BenchPlayback *play)
+{
+    for (int g = 0; g < checks->count; g++) {
+        if (links_of(&play->group[g].runner) == checks->links[g]) continue;
+        bench_check_free(&checks->group[g]);
+        begin_group(checks, g, &play->group[g].runner);
+    }
 }
 
 static void rest(void *check, BenchPlayback *play, void *worst, BenchRow *row)
@@ -110,7 +142,8 @@ static void rest(void *check, BenchPlayback *play, void *worst, BenchRow *row)
 
 static void state(void *check, BenchPlayback *play, void *worst, BenchRow *row)
 {
-    const Checks *checks = check;
+    Checks *checks = check;
+    renew(checks, play);
     for (int g = 0; g < checks->count; g++)
         check_state(&checks->group[g], &play->group[g].runner, worst, row);
 }
@@ -120,6 +153,7 @@ static void end(void *check, BenchPlayback *play, void *worst, BenchRow *row)
     const Checks *checks = check;
     for (int g = 0; g < checks->count; g++)
         check_flow(&checks->group[g], &play->group[g].runner, row);
+    for (int g = 0; g < checks->count; g++) check_breaks(&play->group[g].runner, row);
     for (int g = 0; g < checks->count; g++) check_drift(&play->group[g].runner, worst, row);
 }
 
@@ -127,8 +161,7 @@ static void let_go(void *check)
 {
     Checks *checks = check;
     for (int g = 0; g < checks->count; g++) bench_check_free(&checks->group[g]);
-    free(checks->group);
-    free(checks);
+    sm_free_all(checks->group, checks->links, checks);
 }
 
 const BenchChecker bench_matching_checker = {

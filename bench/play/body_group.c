@@ -1,15 +1,25 @@
 #include "body_group.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "../engines.h"
 #include "../scene/blades.h"
 
+/* How far its links may be stretched before they break; 0: they do not, or its engine does not say
+ * which did. */
+static double strain_limit(const BenchRunner *runner)
+{
+    double limit = runner->scene->params.strain_limit;
+    return runner->type->cut && !runner->type->refines && isfinite(limit) ? limit : 0;
+}
+
 bool bench_group_changes(const BenchGroup *group)
 {
     const BenchScene *scene = group->runner.scene;
-    return group->touched || scene->cut_count > 0 || scene->view.level > 0;
+    return group->touched || scene->cut_count > 0 || scene->view.level > 0 ||
+           strain_limit(&group->runner) > 0;
 }
 
 static SmCode check(const BenchGroup *group, SmError *error)
@@ -34,12 +44,13 @@ static void create_skin(BenchGroup *group)
     memcpy(surface.triangle, mesh->triangle, (size_t)triangles * sizeof *mesh->triangle);
     const BenchRunner *runner = &group->runner;
     for (int i = 0; i < runner->scene->cut_count; i++) sm_blade_init(&group->blade[i]);
+    double limit = strain_limit(runner);
     bool cut_lattice = runner->scene->cut_count > 0 && !runner->type->refines;
     sm_skin_create(runner->type, runner->engine, &group->body.voxels, group->body.instances,
-                   cut_lattice ? (const double(*)[3])runner->x0 : NULL,
+                   cut_lattice || limit > 0 ? (const double(*)[3])runner->x0 : NULL, limit,
                    points ? (SmMesh){0} : surface, &group->skin);
     if (points) group->skin.surface = surface;
-    if (cut_lattice) group->body.cut = &group->skin.cut;
+    if (cut_lattice && !(limit > 0)) group->body.cut = &group->skin.cut;
 }
 
 SmCode bench_group_create(const BenchScene *scene, const BenchBody *body, long count,

@@ -14,6 +14,7 @@ typedef struct {
     bool resampled; /* cells were split or merged, or material cut */
     bool split;     /* the surface has other vertices or triangles */
     long nodes;     /* more than before */
+    int levels;     /* by which a leaf of an octree was split, at most */
     double resample_seconds, follow_seconds;
 } BenchChanged;
 

@@ -8,7 +8,7 @@
 #include "../scene/blades.h"
 #include "body_group.h"
 
-/* ---- a lattice, by particle number: blades */
+/* ---- a lattice, by particle number: blades, and links that have broken by strain */
 
 static SmCode change_lattice(BenchGroup *group, double from, double to, SmError *error)
 {
@@ -16,10 +16,12 @@ static SmCode change_lattice(BenchGroup *group, double from, double to, SmError 
     SmCut *cut = &group->skin.cut;
     double start = sm_now();
     long first = cut->triangles;
-    if (!bench_blades_move(runner->scene, from, to)) return SM_OK;
-    bench_group_sweep(group, from, to, cut);
-    if (cut->triangles == first) return SM_OK;
-    SmCode code = runner->type->cut(runner->engine, cut, first, error);
+    bool torn = sm_skin_tear(&group->skin);
+    long blades = cut->triangles;
+    if (bench_blades_move(runner->scene, from, to)) bench_group_sweep(group, from, to, cut);
+    if (!torn && cut->triangles == first) return SM_OK;
+    SmCode code = SM_OK;
+    if (cut->triangles > blades) code = runner->type->cut(runner->engine, cut, blades, error);
     if (code) return code;
     double done = sm_now();
     sm_skin_follow_cut(&group->skin, first);
@@ -105,6 +107,21 @@ static bool refine(BenchGroup *group, double time, OctStructure *s)
     return any;
 }
 
+/* By how many levels a leaf was split at once, at most. */
+static int levels_split(const OctTree *tree, const OctChange *change)
+{
+    unsigned char *split = sm_alloc((size_t)tree->nodes, 1);
+    int most = 0;
+    for (long i = 0; i < change->inner_count; i++) split[change->inner[i].node] = 1;
+    for (long i = 0; i < change->inner_count; i++) {
+        int levels = 0;
+        for (int n = change->inner[i].node; n >= 0 && split[n]; n = tree->parent[n]) levels++;
+        most = levels > most ? levels : most;
+    }
+    free(split);
+    return most;
+}
+
 static SmCode change_octree(BenchGroup *group, double from, double to, SmError *error)
 {
     BenchRunner *runner = &group->runner;
@@ -121,6 +138,7 @@ static SmCode change_octree(BenchGroup *group, double from, double to, SmError *
     group->last.resample_seconds = sm_now() - start;
     group->last.resampled = change->region_count + change->edge_count > 0;
     if (!group->last.resampled && s->cut.triangles == first) return SM_OK;
+    group->last.levels = levels_split(&s->tree, change);
     start = sm_now();
     sm_skin_follow(&group->skin, change, first);
     group->last.follow_seconds = sm_now() - start;

@@ -40,10 +40,11 @@ static SmCode check(const BenchPlayback *play, const BenchRunner *runner, BenchR
                        "or --engine %s",
                        runner->type->name, bench_engines_that(has_tree, names));
     if (record && bench_playback_changes(play))
-        return sm_fail(error, SM_USAGE,
-                       "--record stores bodies that stay as they are, and %s cuts or refines its "
-                       "own: leave --record out, and the surface is still written",
-                       runner->scene->file);
+        return sm_fail(
+            error, SM_USAGE,
+            "--record stores bodies that stay as they are, and %s cuts, breaks or refines its "
+            "own: leave --record out, and the surface is still written",
+            runner->scene->file);
     return SM_OK;
 }
 

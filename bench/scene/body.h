@@ -13,7 +13,8 @@ typedef struct BenchBody {
     double low[3], high[3]; /* the mesh's bounding box */
     double (*x0)[3];        /* [voxels.particle_count] rest positions, instance pose not applied */
     double *mass;           /* [voxels.particle_count] kg; NULL: 1 each */
-    const SmCut *cut;       /* what of a lattice has been cut, the caller's; NULL: nothing */
+    const SmCut *cut;       /* what has cut a lattice that breaks in no other way, the caller's; or
+                               NULL */
     long instances;
     double (*pose)[3][4];    /* [instances] rest to initial position: translations */
     double voxelise_seconds; /* wall clock */

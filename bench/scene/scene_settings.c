@@ -269,8 +269,8 @@ const BenchSetting bench_scene_settings[] = {
      RUN("gravity", "X,Y,Z", "Mesh units per second squared")},
     {"strain_limit", BENCH_IN(BenchScene, params.strain_limit), 0, 1e6,
      RUN("strain-limit", "S",
-         "Links break beyond this times their length, above 1; 0: never. The surface does not "
-         "tear: its triangles stretch")},
+         "Links break beyond this times their length, above 1; 0: never. The surface comes apart "
+         "with them")},
     {"summation", BENCH_IN(BenchScene, params.summation), BENCH_CHOICES(bench_summations),
      RUN("summation", "HOW", "Sums over regions: %s")},
     {"polar", BENCH_IN(BenchScene, params.polar), BENCH_CHOICES(bench_polars),

@@ -5,6 +5,7 @@
 
 #include "../../lib/test_frame.h"
 #include "../check/check.h"
+#include "../check/parted.h"
 #include "../check/tree_check.h"
 #include "inside.h"
 #include "side.h"
@@ -105,7 +106,9 @@ TEST(lattices_are_as_brute_force_has_them)
         const BenchGroup *group = group_of(VIEW_LATTICE);
         const BenchRunner *runner = &group->runner;
         long parted_count = 0, count = runner->count;
-        int(*parted)[2] = group->body.cut ? bench_check_parted(&group->body, &parted_count) : NULL;
+        int(*parted)[2] = bench_parted(&group->body, runner->type, runner->engine, &parted_count);
+        if (group->body.cut)
+            assert_int_equal(bench_parted_wrong(&group->body, parted_count, parted), 0);
         if (scene[n].frames > 40 && parted_count < 20) fail_msg("%ld links cut", parted_count);
         RefLinks links;
         RefRegions regions;

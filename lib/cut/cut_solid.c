@@ -139,7 +139,25 @@ static void add_to_fans(Sheet *s, long t)
     }
 }
 
-/* Numbers the fans and finds their normals and ways out; false where a normal vanishes. */
+static int compare(const void *a, const void *b)
+{
+    return *(const int *)a - *(const int *)b;
+}
+
+/* Do two fans share a vertex? Pushed out, they would cross. */
+static bool fans_touch(const Sheet *s)
+{
+    int *vertex = sm_alloc((size_t)s->fans, sizeof *vertex);
+    for (long f = 0; f < s->fans; f++) vertex[f] = s->at[f].vertex;
+    qsort(vertex, (size_t)s->fans, sizeof *vertex, compare);
+    bool touch = false;
+    for (long f = 1; f < s->fans; f++) touch |= vertex[f] == vertex[f - 1];
+    free(vertex);
+    return touch;
+}
+
+/* Numbers the fans and finds their normals and ways out; false where a normal vanishes, or two of
+ * them touch. */
 static bool make_fans(Sheet *s)
 {
     int *number = sm_alloc(3 * (size_t)s->triangles, sizeof *number);
@@ -161,7 +179,7 @@ static bool make_fans(Sheet *s)
         usable &= sm_normalize(fan->normal);
         for (int d = 0; d < 3 && length > most; d++) fan->out[d] *= most / length;
     }
-    return usable;
+    return usable && !fans_touch(s);
 }
 
 /* From -1 to 1. */

@@ -69,19 +69,22 @@ static bool has_area(const SmCut *cut, long t, double least)
     return sqrt(sm_dot(normal, normal)) > least;
 }
 
-/* A solid for every triangle: they overlap, and each is simple. */
-static SmCutResult split_by_each(const SurfaceCut *s, long first)
+/* A solid for each half of the triangles first .. last - 1, and so on where that fails: at last one
+ * for every triangle. They overlap, and the smaller they are, the simpler. */
+static SmCutResult split_by_halves(const SurfaceCut *s, long first, long last)
 {
     SmCutResult worst = SM_CUT_MISSED;
-    bool left = false;
-    for (long t = first; t < s->cut->triangles; t++) {
-        SmCutResult result = split_by(s, t, t + 1);
-        if (result == SM_CUT_INCOMPLETE)
-            left |= has_area(s->cut, t, 0.01 * s->cell * s->cell);
-        else if (result > worst)
-            worst = result;
+    for (int half = 0; half < 2; half++) {
+        long middle = first + (last - first) / 2;
+        long from = half ? middle : first, to = half ? last : middle;
+        SmCutResult result = from < to ? split_by(s, from, to) : SM_CUT_MISSED;
+        if (result == SM_CUT_INCOMPLETE && to - from > 1)
+            result = split_by_halves(s, from, to);
+        else if (result == SM_CUT_INCOMPLETE && !has_area(s->cut, from, 0.01 * s->cell * s->cell))
+            result = SM_CUT_MISSED;
+        if (result > worst) worst = result;
     }
-    return left ? SM_CUT_INCOMPLETE : worst;
+    return worst;
 }
 
 static bool is_closed(const SmMesh *mesh)
@@ -98,6 +101,6 @@ SmCutResult sm_cut_surface(SmMesh *mesh, const SmCut *cut, long first, double ce
         s.tear = true;
         result = split_by(&s, first, cut->triangles);
     }
-    if (result == SM_CUT_INCOMPLETE) result = split_by_each(&s, first);
+    if (result == SM_CUT_INCOMPLETE) result = split_by_halves(&s, first, cut->triangles);
     return result;
 }

@@ -253,17 +253,18 @@ static SmEngineParams engine_params(const sb_body_params *p, const SmEngineType 
 }
 
 /* Everything beside the engine, which is there. */
-static void complete(sb_body *body, const sb_voxels *voxels, const sb_mesh *surface, bool lattice)
+static void complete(sb_body *body, const sb_voxels *voxels, const sb_mesh *surface,
+                     double strain_limit)
 {
     sm_voxels_copy(&voxels->voxels, &body->voxels);
     sm_count_particles(body);
-    if (lattice) {
+    if (strain_limit > 0) {
         body->x0 = sm_alloc((size_t)body->particles, sizeof *body->x0);
         sb_voxels_read_particles(voxels, body->x0[0], body->particles, NULL);
     }
     int team = sm_team_enter(body->threads);
     sm_skin_create(body->type, body->engine, &body->voxels, body->instances,
-                   (const double(*)[3])body->x0,
+                   (const double(*)[3])body->x0, strain_limit,
                    surface ? sm_mesh_copy(&surface->mesh) : (SmMesh){0}, &body->skin);
     sm_team_leave(team);
 }
@@ -303,7 +304,7 @@ int sb_body_create(const sb_voxels *voxels, const sb_mesh *surface, const sb_bod
         free(made);
         return sm_done(failed, &why, error);
     }
-    complete(made, voxels, surface, inner.strain_limit > 0 && type->cut);
+    complete(made, voxels, surface, type->cut ? inner.strain_limit : 0);
     *body = made;
     return sm_done(SM_OK, NULL, error);
 }
@@ -341,6 +342,16 @@ static void bind(sb_body *body)
     free(obstacle);
 }
 
+/* Where links have broken by strain the surface comes apart. */
+static void follow_tears(sb_body *body)
+{
+    long first = sm_skin_cut_triangles(&body->skin);
+    if (!sm_skin_tear(&body->skin)) return;
+    int team = sm_team_enter(body->threads);
+    sm_skin_follow_cut(&body->skin, first);
+    sm_team_leave(team);
+}
+
 int sb_body_step(sb_body *body, int64_t steps, sb_error *error)
 {
     int code = sm_check_handle(body, SB_IS_BODY, error);
@@ -350,6 +361,7 @@ int sb_body_step(sb_body *body, int64_t steps, sb_error *error)
     if (body->bind) bind(body);
     for (int64_t step = 0; step < steps; step++) body->type->step(body->engine, NULL);
     body->steps += steps;
+    follow_tears(body);
     return sm_done(SM_OK, NULL, error);
 }
 

@@ -297,7 +297,8 @@ typedef struct {
     int cuttable;        /* 1: sb_body_cut() and blades work. The octree's bodies always are;
                           * FastLSM's cost some memory more, and must be one instance */
     double strain_limit; /* FastLSM: a link longer than this times its rest length breaks, above 1;
-                          * 0: never */
+                          * 0: never. The surface comes apart with the links, after each call of
+                          * sb_body_step() in which any broke: it has other vertices then */
     int summation, polar, layout;        /* SB_SUM_ and SB_LAYOUT_ of FastLSM; SB_POLAR_ */
     int collide_self, collide_instances; /* 1: the body with itself; instances with each other */
     double collide_friction;             /* share of tangential velocity lost on contact, 0 to 1 */

@@ -10,8 +10,19 @@
 #include "../cut/embed_cut.h"
 #include "../cut/split_components.h"
 
+/* What links the engine's body has now; adds to the cut, unless NULL, where they have gone. */
+static void note_links(SmSkin *skin, SmCut *cut)
+{
+    skin->links = skin->type->links(skin->engine, NULL, 0);
+    int(*link)[2] = sm_alloc((size_t)skin->links, sizeof *link);
+    skin->type->links(skin->engine, link, skin->links);
+    sm_tear_update(&skin->tear, skin->links, (const int(*)[2])link, cut);
+    free(link);
+}
+
 void sm_skin_create(const SmEngineType *type, SmEngine *engine, const SmVoxels *voxels,
-                    long instances, const double (*x0)[3], SmMesh surface, SmSkin *skin)
+                    long instances, const double (*x0)[3], double strain_limit, SmMesh surface,
+                    SmSkin *skin)
 {
     *skin = (SmSkin){.type = type,
                      .engine = engine,
@@ -22,6 +33,11 @@ void sm_skin_create(const SmEngineType *type, SmEngine *engine, const SmVoxels *
                      .surface = surface};
     sm_cut_init(&skin->cut, 2 * voxels->cell);
     if (x0) sm_sites_init(voxels, &skin->sites);
+    if (x0 && strain_limit > 0 && isfinite(strain_limit)) {
+        skin->breaks = true;
+        sm_tear_init(&skin->sites, &skin->tear);
+        note_links(skin, NULL);
+    }
     if (surface.vertex_count == 0) return;
     if (skin->octree) {
         const OctStructure *s = oct_engine_structure(engine);
@@ -38,6 +54,7 @@ void sm_skin_free(SmSkin *skin)
     sm_cut_free(&skin->cut);
     sm_embed_free(&skin->embedding);
     sm_sites_free(&skin->sites);
+    sm_tear_free(&skin->tear);
     oct_surface_free(&skin->carried);
     sm_free_all(skin->node, skin->rest, skin->x, skin->F, skin->found, skin->absent);
     *skin = (SmSkin){0};
@@ -244,14 +261,23 @@ void sm_skin_follow(SmSkin *skin, const OctChange *change, long first)
     sm_pieces_free(&pieces);
 }
 
+bool sm_skin_tear(SmSkin *skin)
+{
+    if (!skin->breaks || skin->type->links(skin->engine, NULL, 0) == skin->links) return false;
+    note_links(skin, &skin->cut);
+    return true;
+}
+
 void sm_skin_follow_cut(SmSkin *skin, long first)
 {
     const SmCut *cut = &skin->cut;
+    if (skin->breaks) note_links(skin, NULL);
     if (skin->surface.vertex_count == 0) return;
     SmPieces pieces;
     skin->type->pieces(skin->engine, &pieces);
-    skin->incomplete |=
-        sm_cut_surface(&skin->surface, cut, first, skin->voxels->cell) == SM_CUT_INCOMPLETE;
+    if (cut->triangles > first)
+        skin->incomplete |=
+            sm_cut_surface(&skin->surface, cut, first, skin->voxels->cell) == SM_CUT_INCOMPLETE;
     sm_embed_cut(&skin->embedding, &skin->surface, &skin->sites, cut, first, pieces.piece);
     if (split_apart(skin, &pieces, skin->embedding.vertex_count))
         sm_embed_cut(&skin->embedding, &skin->surface, &skin->sites, cut, cut->triangles,

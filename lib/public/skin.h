@@ -6,6 +6,7 @@
 #include "../../octree/engine.h"
 #include "../../octree/surface/surface.h"
 #include "../cut/blade.h"
+#include "../cut/tear.h"
 #include "../voxel/embed.h"
 
 typedef struct {
@@ -22,6 +23,9 @@ typedef struct {
     SmEmbedding embedding; /* or a lattice's particles; none where particles are its vertices */
     SmCut cut;             /* of a lattice; an octree's structure has its own */
     SmSites sites;         /* of a lattice that can be cut */
+    bool breaks;           /* its links break by strain, too: */
+    long links;            /* as many were left when it was last looked, */
+    SmTear tear;           /* and these */
     bool incomplete;       /* a cut did not split the surface: it could not be done cleanly */
     /* scratch: nodes as the engine counts them; by leaf or particle number */
     double (*node)[3];
@@ -32,10 +36,11 @@ typedef struct {
 } SmSkin;
 
 /* Ties `surface`, which becomes the skin's, to the engine's body, which is as it was created. `x0`
- * are a lattice's particles at rest, before the pose of any instance, if it is to be cut; else
- * NULL. O(vertices). */
+ * are a lattice's particles at rest, before the pose of any instance, if it is to be cut or to
+ * break by `strain_limit` (engine.h); else NULL. O(vertices). */
 void sm_skin_create(const SmEngineType *type, SmEngine *engine, const SmVoxels *voxels,
-                    long instances, const double (*x0)[3], SmMesh surface, SmSkin *skin);
+                    long instances, const double (*x0)[3], double strain_limit, SmMesh surface,
+                    SmSkin *skin);
 void sm_skin_free(SmSkin *skin);
 
 /* What carries the material near a blade whose ends move from blade[0], blade[1] to blade[2],
@@ -51,7 +56,13 @@ long sm_skin_cut_triangles(const SmSkin *skin);
 /* The surface after an octree has changed, with the cut's triangles from number `first` on new. */
 void sm_skin_follow(SmSkin *skin, const OctChange *change, long first);
 
-/* The same after a lattice has been cut by the triangles of skin->cut from number `first` on. */
+/* Adds to skin->cut what a lattice's strain has torn since the last call here or after a cut
+ * (tear.h); comes before a cut. Returns whether any link has broken: then sm_skin_follow_cut() is
+ * to follow, whether or not the cut has grown. O(particles), and O(links) where some have. */
+bool sm_skin_tear(SmSkin *skin);
+
+/* The same as sm_skin_follow() after a lattice has been torn or cut by the triangles of skin->cut
+ * from number `first` on. */
 void sm_skin_follow_cut(SmSkin *skin, long first);
 
 /* The surfaces of all instances, and unit normals unless NULL: [instances * vertices]. `node` are
