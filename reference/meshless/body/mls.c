@@ -6,6 +6,10 @@
 
 enum { MOST_TERMS = REF_MLS_QUADRATIC, MOST_PARTS = 6 };
 
+/* Copied into every caller down to shape_of(), where `dims` and `terms` are constants: the compiler
+ * stops at two bases otherwise, and loops of run time make a point a quarter slower. */
+#define INLINE static inline __attribute__((always_inline))
+
 /* Parts of a function: value and three slopes; in a plane value, two slopes, three second ones. */
 static inline int parts_of(int dims)
 {
@@ -40,7 +44,7 @@ static double spline(double s, double *slope)
 }
 
 /* The parts of a product of splines (eq. 12). */
-static void weigh(int dims, const double s[3], double reach, double *w)
+INLINE void weigh(int dims, const double s[3], double reach, double *w)
 {
     double c[3], slope[3], bend[2];
     for (int d = 0; d < dims; d++) c[d] = spline(s[d], slope + d);
@@ -61,9 +65,9 @@ static void weigh(int dims, const double s[3], double reach, double *w)
 }
 
 /* The nodes that cover x, and for each w's parts and the basis at the node. */
-static void gather(const RefNodes *nodes, int terms, const double x[3], RefShape *shape)
+INLINE void gather(const RefNodes *nodes, int dims, int terms, const double x[3], RefShape *shape)
 {
-    int near, count = 0, dims = nodes->plane ? 2 : 3, parts = parts_of(dims);
+    int near, count = 0, parts = parts_of(dims);
     const int *member = ref_nodes_near(nodes, x, &near);
     double scale = 0;
     for (int n = 0; n < near; n++) {
@@ -86,8 +90,8 @@ static void gather(const RefNodes *nodes, int terms, const double x[3], RefShape
 }
 
 /* Moment matrices A and its derivatives, upper halves; A[0] is A. */
-static inline void moments(int parts, int terms, const RefShape *shape,
-                           double A[MOST_PARTS][MOST_TERMS * MOST_TERMS])
+INLINE void moments(int parts, int terms, const RefShape *shape,
+                    double A[MOST_PARTS][MOST_TERMS * MOST_TERMS])
 {
     memset(A, 0, (size_t)parts * sizeof A[0]);
     for (int n = 0; n < shape->count; n++) {
@@ -101,7 +105,7 @@ static inline void moments(int parts, int terms, const RefShape *shape,
 }
 
 /* L of A = S L L^T S, S the roots of its diagonal; false where a pivot is too small. */
-static inline bool factorise(int terms, const double *A, double *L, double *S)
+INLINE bool factorise(int terms, const double *A, double *L, double *S)
 {
     for (int i = 0; i < terms; i++) {
         if (!(A[terms * i + i] > 0)) return false;
@@ -117,7 +121,7 @@ static inline bool factorise(int terms, const double *A, double *L, double *S)
     return true;
 }
 
-static inline void solve(int terms, const double *L, const double *S, double *b)
+INLINE void solve(int terms, const double *L, const double *S, double *b)
 {
     for (int i = 0; i < terms; i++) {
         b[i] /= S[i];
@@ -132,17 +136,16 @@ static inline void solve(int terms, const double *L, const double *S, double *b)
 }
 
 /* y -= A x */
-static inline void subtract_product(int terms, const double *A, const double *x, double *y)
+INLINE void subtract_product(int terms, const double *A, const double *x, double *y)
 {
     for (int i = 0; i < terms; i++)
         for (int j = 0; j < terms; j++) y[i] -= A[terms * i + j] * x[j];
 }
 
 /* gamma,kl = A^-1 (p,kl - A,kl gamma - A,k gamma,l - A,l gamma,k) in a plane. */
-static inline void differentiate_twice(int terms, double scale,
-                                       double A[MOST_PARTS][MOST_TERMS * MOST_TERMS],
-                                       const double *L, const double *S,
-                                       double gamma[MOST_PARTS][MOST_TERMS])
+INLINE void differentiate_twice(int terms, double scale,
+                                double A[MOST_PARTS][MOST_TERMS * MOST_TERMS], const double *L,
+                                const double *S, double gamma[MOST_PARTS][MOST_TERMS])
 {
     static const int square[3] = {3, 5, 4}; /* the terms 11, 22, 12 */
     for (int m = 0; m < 3; m++) {
@@ -158,7 +161,7 @@ static inline void differentiate_twice(int terms, double scale,
 
 /* With gamma = A^-1 p: phi_I = w_I gamma . p_I, and gamma_,k = A^-1 (p_,k - A_,k gamma) from the
  * same factors (eq. 9). p_I does not change with x: the origin of the basis is a constant. */
-static inline bool shape_at(int dims, int terms, RefShape *shape)
+INLINE bool shape_at(int dims, int terms, RefShape *shape)
 {
     double A[MOST_PARTS][MOST_TERMS * MOST_TERMS], L[MOST_TERMS * MOST_TERMS], S[MOST_TERMS];
     double gamma[MOST_PARTS][MOST_TERMS] = {{1}};
@@ -189,25 +192,31 @@ static inline bool shape_at(int dims, int terms, RefShape *shape)
     return true;
 }
 
-static bool shape_of(RefBasis basis, RefShape *shape)
+INLINE bool gather_and_shape(const RefNodes *nodes, int dims, int terms, const double x[3],
+                             RefShape *shape)
+{
+    gather(nodes, dims, terms, x, shape);
+    return shape->count >= terms && shape_at(dims, terms, shape);
+}
+
+static bool shape_of(const RefNodes *nodes, RefBasis basis, const double x[3], RefShape *shape)
 {
     switch (basis) {
     case REF_MLS_LINEAR:
-        return shape_at(3, REF_MLS_LINEAR, shape);
+        return gather_and_shape(nodes, 3, REF_MLS_LINEAR, x, shape);
     case REF_MLS_QUADRATIC:
-        return shape_at(3, REF_MLS_QUADRATIC, shape);
+        return gather_and_shape(nodes, 3, REF_MLS_QUADRATIC, x, shape);
     case REF_MLS_PLANE_LINEAR:
-        return shape_at(2, REF_MLS_PLANE_LINEAR, shape);
+        return gather_and_shape(nodes, 2, REF_MLS_PLANE_LINEAR, x, shape);
     case REF_MLS_PLANE_QUADRATIC:
-        return shape_at(2, REF_MLS_PLANE_QUADRATIC, shape);
+        return gather_and_shape(nodes, 2, REF_MLS_PLANE_QUADRATIC, x, shape);
     }
     return false;
 }
 
 bool ref_mls_at(const RefNodes *nodes, RefBasis basis, const double x[3], RefShape *shape)
 {
-    gather(nodes, basis, x, shape);
-    bool defined = shape->count >= (int)basis && shape_of(basis, shape);
+    bool defined = shape_of(nodes, basis, x, shape);
     if (!defined) shape->count = 0;
     return defined;
 }
