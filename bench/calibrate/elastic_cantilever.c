@@ -3,44 +3,44 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "../../reference/meshless/body/body.h"
 #include "../../reference/meshless/solve/modes.h"
 
-enum { ACROSS = 6, HELD = ACROSS * ACROSS, MODES = 18 };
+enum { ACROSS = 6, MODES = 18 };
 
 /* Points of the clamped end, in the middle of every octant's face, and the middle of the tip. */
 typedef struct {
-    double x[HELD + 1][3];
+    int held;
+    double x[BENCH_MOST_OCTANTS * BENCH_MOST_OCTANTS + 1][3];
 } Ends;
 
-static Ends find_ends(double aspect)
+static Ends find_ends(double aspect, int across)
 {
-    Ends ends;
-    for (int n = 0; n < HELD; n++) {
+    Ends ends = {.held = across * across};
+    for (int n = 0; n < ends.held; n++) {
         ends.x[n][0] = 0;
-        ends.x[n][1] = (n % ACROSS + 0.5) / ACROSS;
-        ends.x[n][2] = ((double)(n / ACROSS) + 0.5) / ACROSS;
+        ends.x[n][1] = (n % across + 0.5) / across;
+        ends.x[n][2] = ((double)(n / across) + 0.5) / across;
     }
-    ends.x[HELD][0] = aspect;
-    ends.x[HELD][1] = ends.x[HELD][2] = 0.5;
+    ends.x[ends.held][0] = aspect;
+    ends.x[ends.held][1] = ends.x[ends.held][2] = 0.5;
     return ends;
 }
 
-static SmCode build(double aspect, double poisson, const Ends *ends, RefBody *body, SmError *error)
+static SmCode build(double aspect, double poisson, int across, RefBasis basis, const Ends *ends,
+                    RefBody *body, SmError *error)
 {
     RefBrick brick = {{0, 0, 0}, {aspect, 1, 1}};
     RefField field = ref_field_brick(&brick);
-    RefBodyOptions options = {
-        .cell = 1.0 / ACROSS, .basis = REF_MLS_LINEAR, .material = {1, poisson, 1}};
-    return ref_body_build(&field, &options, HELD + 1, ends->x, body, error);
+    RefBodyOptions options = {.cell = 1.0 / across, .basis = basis, .material = {1, poisson, 1}};
+    return ref_body_build(&field, &options, ends->held + 1, ends->x, body, error);
 }
 
 static void clamp(const RefBody *body, const Ends *ends, RefRows *rows, RefRows *tip)
 {
     RefShape shape = ref_shape_create(&body->nodes);
-    for (int n = 0; n <= HELD; n++) {
+    for (int n = 0; n <= ends->held; n++) {
         ref_mls_at(&body->nodes, body->basis, ends->x[n], &shape);
-        for (int d = 0; d < 3; d++) ref_rows_displacement(n < HELD ? rows : tip, &shape, d);
+        for (int d = 0; d < 3; d++) ref_rows_displacement(n < ends->held ? rows : tip, &shape, d);
     }
     ref_shape_free(&shape);
 }
@@ -96,15 +96,32 @@ static SmCode find_frequencies(const RefBody *body, const RefRows *rows, const R
 static SmCode find_meshless(double aspect, double poisson, BenchElasticCantilever *cantilever,
                             SmError *error)
 {
-    Ends ends = find_ends(aspect);
+    Ends ends = find_ends(aspect, ACROSS);
     RefBody body;
-    SmCode code = build(aspect, poisson, &ends, &body, error);
+    SmCode code = build(aspect, poisson, ACROSS, REF_MLS_LINEAR, &ends, &body, error);
     if (code) return code;
     RefRows rows = {0}, tip = {0};
     clamp(&body, &ends, &rows, &tip);
     code = find_sag(&body, &rows, &tip, &cantilever->sag, error);
     if (!code) code = find_frequencies(&body, &rows, &tip, aspect, cantilever->square, error);
     cantilever->there = !code;
+    ref_rows_free(&rows);
+    ref_rows_free(&tip);
+    ref_body_free(&body);
+    return code;
+}
+
+SmCode bench_elastic_sag(double aspect, double poisson, int across, RefBasis basis, long *nodes,
+                         double *sag, SmError *error)
+{
+    RefBody body;
+    RefRows rows = {0}, tip = {0};
+    Ends ends = find_ends(aspect, across);
+    SmCode code = build(aspect, poisson, across, basis, &ends, &body, error);
+    if (code) return code;
+    *nodes = body.nodes.count;
+    clamp(&body, &ends, &rows, &tip);
+    code = find_sag(&body, &rows, &tip, sag, error);
     ref_rows_free(&rows);
     ref_rows_free(&tip);
     ref_body_free(&body);

@@ -7,6 +7,7 @@
 
 #include "../../lib/error.h"
 #include "../../reference/beam_theory.h"
+#include "../../reference/meshless/body/body.h"
 
 typedef enum { BENCH_EULER, BENCH_TIMOSHENKO, BENCH_MESHLESS, BENCH_MODELS } BenchModel;
 
@@ -24,5 +25,13 @@ typedef struct {
  * aspect 5, 2 s of 8, or it is free. */
 SmCode bench_elastic_cantilever(BenchModel model, double aspect, double poisson,
                                 BenchElasticCantilever *cantilever, SmError *error);
+
+/* The meshless body's sag alone, `across` octants thick, from 1 to BENCH_MOST_OCTANTS, by shape
+ * functions of either basis; and how many nodes it has. Errors as above, and SM_INPUT where the
+ * program was built without its libraries. With 320 nodes about 0.2 s, of the quadratic basis 2 s.
+ */
+enum { BENCH_MOST_OCTANTS = 8 };
+SmCode bench_elastic_sag(double aspect, double poisson, int across, RefBasis basis, long *nodes,
+                         double *sag, SmError *error);
 
 #endif

@@ -187,6 +187,25 @@ static void near_to(double value, double wanted, double share)
     if (!(fabs(value / wanted - 1) <= share)) fail_msg("%g, not %g", value, wanted);
 }
 
+/* A cantilever of few nodes sags too little, of the quadratic basis by less. */
+TEST(quadratic_functions_bend_with_fewer_nodes)
+{
+    if (!ref_solver_built) skip();
+    BenchElasticCantilever theory;
+    double sag[2];
+    long nodes;
+    assert_int_equal(bench_elastic_cantilever(BENCH_TIMOSHENKO, 5, 0.3, &theory, NULL), SM_OK);
+    for (int b = 0; b < 2; b++) {
+        RefBasis basis = b ? REF_MLS_QUADRATIC : REF_MLS_LINEAR;
+        assert_int_equal(bench_elastic_sag(5, 0.3, 3, basis, &nodes, &sag[b], NULL), SM_OK);
+        assert_int_equal(nodes, 3 * 3 * 15);
+        sag[b] /= theory.sag;
+    }
+    near_to(sag[0], 0.947, 0.01);
+    near_to(sag[1], 1, 0.05);
+    assert_true(fabs(sag[1] - 1) < 0.8 * fabs(sag[0] - 1));
+}
+
 /* Theory's beam has its own modulus, by the sag and by every frequency, and its own loss. */
 TEST(a_beam_gives_its_modulus_back)
 {

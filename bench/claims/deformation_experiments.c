@@ -6,6 +6,7 @@
 #include "../../fastlsm/fastlsm.h"
 #include "../../reference/shape_matching.h"
 #include "../beam/clamped_beam.h"
+#include "../calibrate/elastic_cantilever.h"
 #include "../check/solid_block.h"
 #include "../engines.h"
 #include "experiments.h"
@@ -190,6 +191,24 @@ SmCode bench_deform_sag(const BenchExperiment *of, SmError *error)
     for (int c = 0; c < count && !code && of->curve->valid; c++) {
         scene->params.w = w[c];
         code = hang(of, type, error);
+    }
+    return code;
+}
+
+SmCode bench_deform_elastic_sag(const BenchExperiment *of, SmError *error)
+{
+    const double aspect = 5, poisson = 0.3;
+    int across[BENCH_RANGE_POINTS], count = bench_range_numbers(&of->measure->n, across);
+    bool quadratic = !strcmp(of->measure->field, "quadratic");
+    BenchElasticCantilever theory;
+    SmCode code = bench_elastic_cantilever(BENCH_TIMOSHENKO, aspect, poisson, &theory, error);
+    for (int c = 0; c < count && !code; c++) {
+        long nodes;
+        double sag;
+        code =
+            bench_elastic_sag(aspect, poisson, across[c],
+                              quadratic ? REF_MLS_QUADRATIC : REF_MLS_LINEAR, &nodes, &sag, error);
+        if (!code) bench_curve_exact(of->curve, (double)nodes, sag / theory.sag);
     }
     return code;
 }

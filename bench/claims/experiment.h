@@ -63,6 +63,9 @@
  *   finest cells, range `n`, against how many those are.
  * - breaking: us for a link of a solid cube of n x n x n particles on the lattice to be broken, its
  *   regions, sums and constants brought up to date with it, against their number; w = 2, range `n`.
+ * - elastic-sag: how deep the tip of a meshless cantilever, five times as long as thick, hangs, by
+ *   what Timoshenko's theory says, against its nodes; `field` "linear" or "quadratic", the basis;
+ *   range `n`, octants that it is thick.
  * - left: what is left of `scene`'s deformation, rms cells from the best rigid motion of the rest
  *   shape, after so many frames, range `n`, and as many with nothing that holds, pushes or stops
  *   the body, over the last half of these; damped at every `every`-th step if given; also
@@ -93,6 +96,7 @@ typedef enum {
     BENCH_TRY_BODY_SUMS,
     BENCH_TRY_BODY_ADDITIONS,
     BENCH_TRY_BREAKING,
+    BENCH_TRY_ELASTIC_SAG,
 } BenchTry;
 
 typedef enum {

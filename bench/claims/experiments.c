@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "../../lib/printable.h"
+#include "../calibrate/elastic_cantilever.h"
 #include "../engines.h"
 #include "../measure/disturbance.h"
 #include "scene_field.h"
@@ -87,6 +88,8 @@ static const Kind kinds[] = {
                              .run = bench_structure_distances, .timed = true},
     [BENCH_TRY_BREAKING] = {"breaking", "particles", "us/link", "n",
                             .run = bench_structure_breaking, .timed = true},
+    [BENCH_TRY_ELASTIC_SAG] = {"elastic-sag", "nodes", "sag by theory's", "field|n",
+                               "linear|quadratic", .run = bench_deform_elastic_sag},
     [BENCH_TRY_LEFT] = {"left", "frames", "rms distance from the rest shape, cells",
                         "scene|field|without|every|n", "|played|smoothed", .run = bench_rest_left},
     [BENCH_TRY_PUSHED] = {"pushed", "-", NULL, "scene|field|without", BENCH_PUSHED_FIELDS,
@@ -169,6 +172,8 @@ const char *bench_experiment_fault(const BenchMeasure *measure)
         return "cubes have four particles a side or more: n.from is at least 4";
     if (cubes && measure->n.to > 128)
         return "cubes have at most 128 particles a side: n.to is at most 128";
+    if (measure->experiment == BENCH_TRY_ELASTIC_SAG && measure->n.to > BENCH_MOST_OCTANTS)
+        return "beams are at most 8 octants thick: n.to is at most 8";
     if (takes(kind, "w") && measure->w.to > BENCH_MOST_W) return "w.to is at most 16";
     if (measure->experiment == BENCH_TRY_BLENDING && measure->n.to > 16)
         return "few clusters: n.to is at most 16";

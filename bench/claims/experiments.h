@@ -36,7 +36,8 @@ BenchMeasuring bench_costs_sums, bench_costs_body_sums, bench_costs_size, bench_
 
 /* How bodies deform (deformation_experiments.c). The first also keeps, for every w, the profile of
  * the displacement as evidence: "smoothing.w3.profile". */
-BenchMeasuring bench_deform_smoothing, bench_deform_blending, bench_deform_sag;
+BenchMeasuring bench_deform_smoothing, bench_deform_blending, bench_deform_sag,
+    bench_deform_elastic_sag;
 
 /* Where the bar of fastlsm Fig. 3's kind has its particle that is at `rest`: `along` long in z,
  * its middle in the origin, bent and twisted by half a turn. */

@@ -19,6 +19,7 @@ typedef struct {
     const char *scene, *output, *w, *width;
     bool no_output, overwrite, hash;
     long nodes; /* 0: not given */
+    int mode;   /* of an elastic body, to be shown; 0: it is simulated */
     int record; /* BenchRecord */
     BenchFields fields;
 } Options;
@@ -60,6 +61,10 @@ static const BenchSetting settings[] = {
                   "Octree, meshless, shell: wanted simulation nodes (meshless: "
                   "1000, shell: 450)"),
      BENCH_IN(Options, nodes), 1, 1e9, .of = BENCH_OF_SAMPLED | BENCH_OF_ELASTIC | BENCH_OF_SHELL},
+    {BENCH_OPTION("mode", "K", 1,
+                  "Meshless: in place of the motion, one period of the free body's K-th natural "
+                  "mode that deforms it, from 1, in so many frames"),
+     BENCH_IN(Options, mode), 1, 994},
     {.section = 2, .help = "What is written:"},
     {BENCH_OUTPUT_OPTION("FILE.vtkhdf", 2, "Trajectory (default: SCENE.vtkhdf in this folder)"),
      BENCH_IN(Options, output)},
@@ -159,6 +164,11 @@ static SmCode check_owners(const Options *options, const BenchEngine *engine, Sm
     if (!engine->twin && options->record)
         return sm_fail(error, SM_USAGE,
                        "--record stores goals of shape matching, and %s has none: leave it out",
+                       engine->type[0]->name);
+    if (options->mode && !(engine->own & BENCH_OF_ELASTIC))
+        return sm_fail(error, SM_USAGE,
+                       "--mode is of a meshless body, and %s has no natural modes: add --engine "
+                       "meshless, or leave it out",
                        engine->type[0]->name);
     return SM_OK;
 }
@@ -362,6 +372,32 @@ static SmCode run_frames(BenchPlayback *play, BenchRecording *recording, const O
     return code;
 }
 
+/* One period of a natural mode, whose largest displacement is a tenth of the body's longest extent.
+ */
+static SmCode show_mode(BenchPlayback *play, BenchRecording *recording, const Options *options,
+                        SmError *error)
+{
+    const BenchBody *body = play->body;
+    const BenchScene *scene = play->scene;
+    SmEngine *engine = play->group[0].runner.engine;
+    int modes = ref_meshless_shapes(engine);
+    double longest = 0, hertz = 0;
+    if (options->mode > modes)
+        return sm_fail(error, SM_USAGE,
+                       "--mode %d: %d modes were found that deform the body: --modes %d finds more",
+                       options->mode, modes, options->mode + 6);
+    for (int d = 0; d < 3; d++) longest = fmax(longest, body->high[d] - body->low[d]);
+    SmCode code = SM_OK;
+    for (int f = 0; f <= scene->frames && !code; f++) {
+        double share = scene->frames ? (double)f / scene->frames : 0.25;
+        hertz = ref_meshless_show(engine, options->mode - 1, 0.1 * longest * sin(2 * M_PI * share));
+        play->time = share / hertz;
+        if (recording) code = bench_recording_frame(recording, error);
+    }
+    if (!code) printf("mode %d of %d: %.6g Hz\n", options->mode, modes, hertz);
+    return code;
+}
+
 /* What --output says, or the scene's name in this folder, which `room` has room for. */
 static const char *output_path(const Options *options, const BenchScene *scene,
                                char room[BENCH_NAME + 8])
@@ -418,8 +454,11 @@ static SmCode record(const Options *options, BenchPlayback *play, const BenchMac
                                     machine, recorder, error);
     if (code) return code;
     if (recorder) warn_of_size(options, recorder, path);
-    BenchOutcome outcome;
-    code = run_frames(play, recorder, options, &outcome, error);
+    BenchOutcome outcome = {.finite = true};
+    if (options->mode)
+        code = show_mode(play, recorder, options, error);
+    else
+        code = run_frames(play, recorder, options, &outcome, error);
     if (code || !outcome.finite) {
         if (recorder) bench_recording_abandon(recorder);
         if (code) return code;
@@ -431,7 +470,7 @@ static SmCode record(const Options *options, BenchPlayback *play, const BenchMac
     if (options->hash) bench_playback_hash(play, hash);
     if (recorder) code = bench_recording_close(recorder, error);
     if (code) return code;
-    bool valid = bench_summary_print(play, &outcome);
+    bool valid = options->mode || bench_summary_print(play, &outcome);
     if (options->hash)
         printf("state after %ld step%s: %s (%s, %s precision)\n", outcome.steps,
                outcome.steps == 1 ? "" : "s", hash, machine->isa,

@@ -275,6 +275,37 @@ long ref_meshless_points(const SmEngine *engine, double (*x)[3])
     return engine->all - engine->count;
 }
 
+enum { RIGID = 6 };
+
+int ref_meshless_shapes(const SmEngine *engine)
+{
+    int modes = engine->elastic.modes.count;
+    return modes > RIGID ? modes - RIGID : 0;
+}
+
+double ref_meshless_show(SmEngine *engine, int mode, double far)
+{
+    const RefModes *modes = &engine->elastic.modes;
+    size_t count = (size_t)modes->count, k = (size_t)(mode + RIGID);
+    double most = 0;
+    assert(!engine->points && mode >= 0 && mode < ref_meshless_shapes(engine));
+    for (long n = 0; n < modes->nodes; n++) {
+        double u[3];
+        for (size_t d = 0; d < 3; d++) u[d] = modes->shape[(3 * (size_t)n + d) * count + k];
+        most = fmax(most, sqrt(sm_dot(u, u)));
+    }
+    RefMotion motion;
+    ref_motion_create(&engine->elastic.body, modes, &engine->elastic.motion.damping, &motion);
+    motion.z[k] = far / most;
+    ref_motion_pose(&motion);
+    ref_skin_place(&engine->elastic.skin, CONST(motion.moved), engine->elastic.carried);
+    ref_motion_free(&motion);
+    for (long s = 0; s < engine->all; s++)
+        memcpy(engine->x[engine->elastic.skin.order[s]], engine->elastic.carried[s],
+               sizeof *engine->x);
+    return sqrt(fmax(modes->lambda[k], 0)) / (2 * M_PI);
+}
+
 static void meshless_push(SmEngine *engine, long count, const long *particle,
                           const double (*impulse)[3])
 {

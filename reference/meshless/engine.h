@@ -30,18 +30,21 @@ enum {
 };
 
 typedef struct RefStored RefStored; /* stored.h */
+typedef enum { REF_MESHLESS_LINEAR, REF_MESHLESS_QUADRATIC } RefMeshlessBasis;
 
 struct RefMeshlessOptions {
     const SmMesh *mesh;  /* the body's closed surface, read by create() only */
     const RefMpu *given; /* NULL, or the field of points that were given: they are carried, too */
     const RefStored *stored; /* NULL, or the body and its modes (stored.h): none are sought then */
-    long points;      /* on the mesh's surface, of which the field is made without `given`; 0:
-                       * REF_MESHLESS_POINTS, of thin bodies more, to REF_MESHLESS_MOST_POINTS */
-    long nodes;       /* wanted; 0: REF_MESHLESS_NODES */
-    bool uniform;     /* octants are all of one size; false: inside they may be twice as large */
-    int modes;        /* 0: REF_MESHLESS_MODES, or half of what there is */
-    double thickness; /* of a shell (shell_engine.h), mesh units; 0: REF_SHELL_THIN */
-    RefMaterial material;     /* mesh units, kg, s */
+    long points;  /* on the mesh's surface, of which the field is made without `given`; 0:
+                   * REF_MESHLESS_POINTS, of thin bodies more, to REF_MESHLESS_MOST_POINTS */
+    long nodes;   /* wanted; 0: REF_MESHLESS_NODES */
+    bool uniform; /* octants are all of one size; false: inside they may be twice as large */
+    int modes;    /* 0: REF_MESHLESS_MODES, or half of what there is */
+    RefMeshlessBasis basis; /* of the shape functions (meshless eq. 11); covers of the quadratic one
+                             * are twice as wide */
+    double thickness;       /* of a shell (shell_engine.h), mesh units; 0: REF_SHELL_THIN */
+    RefMaterial material;   /* mesh units, kg, s */
     double stiffness_damping; /* b of Rayleigh's a + b lambda, s; a loses the share params->damping
                                * of the speed in a step */
 };
@@ -53,6 +56,16 @@ SmCode ref_meshless_field(const RefMeshlessOptions *options, RefMpu *mpu, SmErro
 /* How many points options->given has (RefPoints, as_given), and unless `x` is NULL where they are
  * now, in their order; 0 of a mesh. */
 long ref_meshless_points(const SmEngine *engine, double (*x)[3]);
+
+/* How many natural modes were found that deform the body when nothing holds it: those of its modes
+ * but the six rigid ones, rising in frequency. */
+int ref_meshless_shapes(const SmEngine *engine);
+
+/* Puts the particles of a lattice, and points that were given, where that body's mode `mode`, from
+ * 0, has them at such an amplitude that the node that moves most, were the motion small, is `far`
+ * mesh units from rest, warped as all motion is; below 0: the other way. Returns its frequency, Hz.
+ * The motion itself stays: the next step goes on from it. O((nodes + particles) modes). */
+double ref_meshless_show(SmEngine *engine, int mode, double far);
 
 extern const SmEngineType ref_meshless_engine;
 

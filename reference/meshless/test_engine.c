@@ -2,6 +2,7 @@
 #include "../../lib/shapes/shape.h"
 #include "../../lib/test_fields.h"
 #include "../../lib/test_frame.h"
+#include "../../lib/vector.h"
 #include "../../lib/voxel/voxelise.h"
 #include "engine.h"
 #include "test_solver.h"
@@ -97,6 +98,64 @@ TEST(rest_and_fall)
         type->destroy(engine);
         scene_free(&scene);
     }
+}
+
+/* How far particles are from rest, at most. */
+static double farthest(SmEngine *engine, double (**x)[3])
+{
+    double(*rest)[3] = field(engine, SM_REST), most = 0;
+    *x = field(engine, SM_POSITION);
+    for (long p = 0; p < particles_of(engine); p++)
+        most = fmax(most, sqrt(sm_square_between(rest[p], (*x)[p])));
+    free(rest);
+    return most;
+}
+
+/* A free beam's modes, shown: rising, the first at theory's frequency; about as far as was asked
+ * for, to and fro alike; no mode in another; and the motion goes on from where it was. */
+TEST(modes_are_shown)
+{
+    needs_solver();
+    Scene scene = beam_create(8, 300);
+    SmEngine *engine;
+    scene.options.modes = 12;
+    assert_int_equal(create(&scene, &engine, NULL), SM_OK);
+    assert_int_equal(ref_meshless_shapes(engine), 6);
+    long count = particles_of(engine);
+    double(*shape[6])[3], (*back)[3], (*rest)[3] = field(engine, SM_REST), last = 0;
+    for (int mode = 0; mode < 6; mode++) {
+        double hertz = ref_meshless_show(engine, mode, -1e-3);
+        farthest(engine, &back);
+        assert_true(ref_meshless_show(engine, mode, 1e-3) == hertz && hertz >= last);
+        double most = farthest(engine, &shape[mode]);
+        if (!(most > 0.8e-3 && most < 1.25e-3)) fail_msg("mode %d: %g", mode, most);
+        for (long p = 0; p < count; p++)
+            for (int d = 0; d < 3; d++)
+                assert_true(fabs(shape[mode][p][d] + back[p][d] - 2 * rest[p][d]) < 1e-5);
+        free(back);
+        last = hertz;
+    }
+    /* Timoshenko's is 5% below Euler and Bernoulli's here */
+    double euler = pow(4.73004 / 8, 2) * sqrt(1e5 / 1000 / 12) / (2 * M_PI);
+    double first = ref_meshless_show(engine, 0, 0);
+    if (!(first > 0.9 * euler && first < euler)) fail_msg("%g Hz, by theory %g", first, euler);
+    for (int mode = 1; mode < 6; mode++) {
+        double dot = 0, square = 0;
+        for (long p = 0; p < count; p++)
+            for (int d = 0; d < 3; d++) {
+                double u = shape[0][p][d] - rest[p][d], v = shape[mode][p][d] - rest[p][d];
+                dot += u * v;
+                square += v * v;
+            }
+        assert_true(fabs(dot) < 0.1 * square);
+    }
+    for (int step = 0; step < 3; step++) type->step(engine, NULL);
+    assert_true(farthest(engine, &back) < 1e-6);
+    for (int mode = 0; mode < 6; mode++) free(shape[mode]);
+    free(back);
+    free(rest);
+    type->destroy(engine);
+    scene_free(&scene);
 }
 
 /* Pushes on all particles of a speed times their mass give the body that speed, once it no longer
