@@ -220,8 +220,8 @@ static const BenchSetting meshless_table[] = {
      BOTH("density", "RHO", "kg/m^3 (default: 1000)")},
     {"basis", BENCH_IN(BenchScene, meshless.basis), BENCH_ONE_OF("linear", "quadratic"),
      MESHLESS("basis", "WHICH",
-              "the functions that nodes' shape functions reproduce: %s; quadratic ones bend right "
-              "with fewer nodes, and cost more a node (default: linear)")},
+              "the functions that nodes' shape functions reproduce: %s; quadratic ones cost "
+              "far more a node (default: linear)")},
     {"modes", BENCH_IN(BenchScene, meshless.modes), 7, 1000,
      MESHLESS("modes", "N", "natural modes, 7 to 1000 (default: 64)")},
     {"points", BENCH_IN(BenchScene, meshless.points), REF_LEAST_POINTS, REF_MOST_POINTS,
