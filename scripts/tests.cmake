@@ -173,13 +173,23 @@ if(NOT SHAPEBENCH_SANITIZE AND NOT SHAPEBENCH_CORE)
   add_script_test(page view/run_tests.py $<TARGET_FILE:shapebench>)
 endif()
 
-# These start first, of any instruction set and precision, so that none is alone in the end.
-set(long "bench_(calibrate|regress|kernels|sweep_run|points|gap|threads|command|experiment)|meshless_engine"
-  "fastlsm_(fastlsm|fracture)|octree_octree|lib_shape|render|brute_force|damage|writers|scenes|report|install|package|documents|page")
-list(JOIN long "|" long)
+# These start first, of any instruction set and precision, those that take longest before the others, so
+# that none is alone in the end: about the seconds of each.
+set(long_150 page)
+set(long_100 scenes)
+set(long_60 brute_force documents report render writers)
+set(long_20 bench_inside damage bench_regress package python_module python_wheel lib_shape meshless_point_maps)
+set(long_10 bench_calibrate bench_kernels bench_sweep_run bench_points bench_gap bench_threads bench_command
+  bench_experiment bench_comparison bench_stiffness bench_step_record bench_view bench_octree_states
+  meshless_engine lib_shapebench fastlsm_engine)
+set(long_5 fastlsm_fastlsm fastlsm_fracture octree_octree lib_cut_surface install)
 get_property(tests DIRECTORY PROPERTY TESTS)
 foreach(test ${tests})
-  if(test MATCHES "^(${long})(_sse2|_avx2|_avx512)?(_f64)?$")
-    set_tests_properties(${test} PROPERTIES COST 1)
-  endif()
+  string(REGEX REPLACE "_f64$" "" noun ${test})
+  string(REGEX REPLACE "_(sse2|avx2|avx512)$" "" noun ${noun})
+  foreach(seconds 150 100 60 20 10 5)
+    if(noun IN_LIST long_${seconds})
+      set_tests_properties(${test} PROPERTIES COST ${seconds})
+    endif()
+  endforeach()
 endforeach()
