@@ -48,6 +48,10 @@ int main(int count, char **argument)
                 scene.file, scene.engine);
         return say(&error);
     }
+    if (scene.meshless.basis != REF_MESHLESS_LINEAR) {
+        sm_fail(&error, SM_USAGE, "%s: stored bodies are of the linear basis", scene.file);
+        return say(&error);
+    }
     if (bench_body_of_scene(&scene, NULL, &body, &error)) return say(&error);
     SmCode code =
         bench_runner_create(&scene, &body, bench_engine(scene.engine)->type[0], 0, &runner, &error);
