@@ -38,10 +38,12 @@ static SmCode build(double aspect, double poisson, int across, RefBasis basis, c
 static void clamp(const RefBody *body, const Ends *ends, RefRows *rows, RefRows *tip)
 {
     RefShape shape = ref_shape_create(&body->nodes);
-    for (int n = 0; n <= ends->held; n++) {
+    for (int n = 0; n < ends->held; n++) {
         ref_mls_at(&body->nodes, body->basis, ends->x[n], &shape);
-        for (int d = 0; d < 3; d++) ref_rows_displacement(n < ends->held ? rows : tip, &shape, d);
+        for (int d = 0; d < 3; d++) ref_rows_displacement(rows, &shape, d);
     }
+    ref_mls_at(&body->nodes, body->basis, ends->x[ends->held], &shape);
+    for (int d = 0; d < 3; d++) ref_rows_displacement(tip, &shape, d);
     ref_shape_free(&shape);
 }
 

@@ -286,7 +286,7 @@ int ref_meshless_shapes(const SmEngine *engine)
 double ref_meshless_show(SmEngine *engine, int mode, double far)
 {
     const RefModes *modes = &engine->elastic.modes;
-    size_t count = (size_t)modes->count, k = (size_t)(mode + RIGID);
+    size_t count = (size_t)modes->count, k = (size_t)mode + RIGID;
     double most = 0;
     assert(!engine->points && mode >= 0 && mode < ref_meshless_shapes(engine));
     for (long n = 0; n < modes->nodes; n++) {
