@@ -30,6 +30,7 @@ ELSEWHERE = {
     r"mpirun": "bench/campaign/test_campaign.c",
     r"scripts/check_step.py|scripts/brute_force.py": "scripts/test_brute_force.py, bench/play/test_step_record.c",
     r"scripts/check_|scripts/readme.py": "by hand",
+    r"scripts/baselines.py": "scripts/test_baselines.py",
     r"cmake|cc |export ": "scripts/test_install.sh",
 }
 # What a command of the program is given in the place of what the document says, and what it is not given.

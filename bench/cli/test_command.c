@@ -97,7 +97,8 @@ TEST(wrong_values_of_run_are_one_line_and_an_exit_code)
 TEST(options_that_an_engine_has_not_are_refused)
 {
     static const Mistake cases[] = {
-        {"run tiny.cfg --engine warp", 2, "'warp' is not one of fastlsm, octree, brute, meshless, shell"},
+        {"run tiny.cfg --engine warp", 2,
+         "'warp' is not one of fastlsm, octree, brute, meshless, shell"},
         {"run tiny.cfg --engine octre", 2, "did you mean 'octree'? See 'shapebench run --help'"},
         {"run tiny.cfg --epsilon 0.5", 2, "are the octree's: add --engine octree"},
         {"run tiny.cfg --levels 2 --nodes 9", 2,

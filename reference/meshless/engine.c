@@ -298,7 +298,7 @@ double ref_meshless_show(SmEngine *engine, int mode, double far)
     ref_motion_create(&engine->elastic.body, modes, &engine->elastic.motion.damping, &motion);
     motion.z[k] = far / most;
     ref_motion_pose(&motion);
-    ref_skin_place(&engine->elastic.skin, CONST(motion.moved), engine->elastic.carried);
+    ref_skin_place(&engine->elastic.skin, CONST(motion.moved), NULL, engine->elastic.carried);
     ref_motion_free(&motion);
     for (long s = 0; s < engine->all; s++)
         memcpy(engine->x[engine->elastic.skin.order[s]], engine->elastic.carried[s],
