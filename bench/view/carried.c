@@ -18,7 +18,10 @@ static BenchGroup *find_group(int number)
     ViewSide *side = view_side_of(number);
     if (!side || side->play.count != 1) return NULL;
     BenchGroup *group = &side->play.group[0];
-    return group->skin.octree || group->skin.type->vertices || sm_skin_cut_triangles(&group->skin) > 0 ? NULL : group;
+    return group->skin.octree || group->skin.type->vertices ||
+                   sm_skin_cut_triangles(&group->skin) > 0
+               ? NULL
+               : group;
 }
 
 int view_carried(int side)
