@@ -23,7 +23,8 @@ except ImportError as missing:
 NOT_RECORDED = {"cuts": "is cut: regions change", "strain_limit": "breaks: regions change",
                 "touches": "is refined: regions change",
                 "view": "is refined: regions change",
-                'engine = "meshless"': "steps are of modes, not of particles"}
+                'engine = "meshless"': "steps are of modes, not of particles",
+                'engine = "shell"': "steps are of nodes' parameters, not of particles"}
 ALTERED = (1e-3, float("nan"))  # cells by which one particle's place, velocity or goal is altered
 
 
