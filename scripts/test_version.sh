@@ -24,3 +24,7 @@ of_header() {
     sed -nE 's/^#define SHAPEBENCH_VERSION_(MAJOR|MINOR|PATCH) ([0-9]+)$/\2/p' "$root/lib/public/shapebench.h" | paste -sd .
 }
 same shapebench.h of_header
+of_addon() {
+    sed -nE 's/^    "version": \(([0-9]+), ([0-9]+), ([0-9]+)\),$/\1.\2.\3/p' "$root/lib/python/blender/__init__.py"
+}
+same "the Blender add-on" of_addon

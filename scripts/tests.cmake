@@ -142,7 +142,7 @@ endif()
 # A test that is a program, by its place from scripts/; skipped where something that it needs is absent.
 function(add_script_test name script)
   add_test(NAME ${name} COMMAND ${CMAKE_SOURCE_DIR}/scripts/${script} ${ARGN})
-  set_tests_properties(${name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 900)
+  set_tests_properties(${name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 2400)
 endfunction()
 
 if(NOT SHAPEBENCH_SANITIZE AND NOT SHAPEBENCH_CORE)

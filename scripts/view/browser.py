@@ -25,7 +25,7 @@ def start(width, height, own_session=False):
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
     service = Service(DRIVER, popen_kw={"start_new_session": own_session})
     driver = webdriver.Chrome(service=service, options=options)
-    driver.set_script_timeout(120)
+    driver.set_script_timeout(600)  # a crowd without a graphics card, beside other work
     return driver
 
 

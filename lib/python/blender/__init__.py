@@ -7,7 +7,7 @@ bl_info = {
     "name": "shapebench",
     "description": "Deformable bodies by fast lattice and by octree shape matching, baked",
     "author": "shapebench authors",
-    "version": (0, 1, 0),
+    "version": (1, 0, 0),
     "blender": (3, 3, 0),
     "location": "Properties > Physics",
     "category": "Physics",
