@@ -164,7 +164,7 @@ static void find_reaches(RefSheet *sheet, const RefRows *rows, RefSheetHold *hol
 {
     size_t size = 9 * (size_t)sheet->warp.nodes;
     double *b = sm_alloc((size_t)sheet->warp.nodes, sizeof *b);
-    for (int k = 1; k < holds; k++) {
+    for (int k = 1; rows->start && k < holds; k++) {
         memset(b, 0, (size_t)sheet->warp.nodes * sizeof *b);
         for (long e = rows->start[hold[k].row]; e < rows->start[hold[k].row + 1]; e++)
             b[rows->column[e]] += rows->value[e];
