@@ -186,7 +186,7 @@ static SmCode map_torus(const RefTriangulation *surface, const double *weight, d
     for (int k = 0; k < 3; k++)
         energy[k] = ref_harmonic_product(surface, weight, form[k / 2], form[(k + 1) / 2]);
     double height = sqrt(fmax(energy[0] * energy[2] - energy[1] * energy[1], 0)) / energy[2];
-    double complex tau = CMPLX(-energy[1] / energy[2], height), period[2] = {1, tau};
+    double complex tau = -energy[1] / energy[2] + height * I, period[2] = {1, tau};
     shorten(period);
     double shape = cimag(period[1] / period[0]);
     plane->side[0] = sqrt(area / shape);
