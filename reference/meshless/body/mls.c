@@ -35,37 +35,55 @@ void ref_shape_free(RefShape *shape)
     *shape = (RefShape){0};
 }
 
-/* meshless eq. 13; the slope is by the signed s. */
-static double spline(double s, double *slope)
+double ref_mls_spline(double s, double slope[2])
 {
     double a = fabs(s);
-    *slope = a < 0.5 ? -4 * s : copysign(4 * (1 - a), -s);
+    slope[0] = a < 0.5 ? -4 * s : copysign(4 * (1 - a), -s);
+    slope[1] = a < 0.5 ? -4 : 4;
     return a < 0.5 ? 1 - 2 * s * s : 2 * (1 - a) * (1 - a);
 }
 
 /* The parts of a product of splines (eq. 12). */
 INLINE void weigh(int dims, const double s[3], double reach, double *w)
 {
-    double c[3], slope[3], bend[2];
-    for (int d = 0; d < dims; d++) c[d] = spline(s[d], slope + d);
+    double c[3], slope[3][2];
+    for (int d = 0; d < dims; d++) c[d] = ref_mls_spline(s[d], slope[d]);
     if (dims == 3) {
         w[0] = c[0] * c[1] * c[2];
-        w[1] = slope[0] * c[1] * c[2] / reach;
-        w[2] = c[0] * slope[1] * c[2] / reach;
-        w[3] = c[0] * c[1] * slope[2] / reach;
+        w[1] = slope[0][0] * c[1] * c[2] / reach;
+        w[2] = c[0] * slope[1][0] * c[2] / reach;
+        w[3] = c[0] * c[1] * slope[2][0] / reach;
         return;
     }
-    for (int d = 0; d < 2; d++) bend[d] = (fabs(s[d]) < 0.5 ? -4 : 4) / (reach * reach);
     w[0] = c[0] * c[1];
-    w[1] = slope[0] * c[1] / reach;
-    w[2] = c[0] * slope[1] / reach;
-    w[3] = bend[0] * c[1];
-    w[4] = c[0] * bend[1];
-    w[5] = slope[0] * slope[1] / (reach * reach);
+    w[1] = slope[0][0] * c[1] / reach;
+    w[2] = c[0] * slope[1][0] / reach;
+    w[3] = slope[0][1] * c[1] / (reach * reach);
+    w[4] = c[0] * slope[1][1] / (reach * reach);
+    w[5] = slope[0][0] * slope[1][0] / (reach * reach);
+}
+
+/* Multiplies a weight in a plane by what cracks let through; false where that is nothing. */
+static bool cut(const RefNodes *nodes, int member, const double x[3], const double eye[3],
+                double *w)
+{
+    double f[MOST_PARTS], whole[MOST_PARTS];
+    if (!nodes->cut.pass(nodes->cut.cracks, eye, nodes->position[member], nodes->reach[member], f))
+        return false;
+    if (eye != x) memset(f + 1, 0, 5 * sizeof *f);
+    memcpy(whole, w, sizeof whole);
+    w[0] = f[0] * whole[0];
+    for (int k = 1; k < 3; k++) w[k] = f[0] * whole[k] + f[k] * whole[0];
+    for (int m = 0; m < 3; m++) {
+        int k = second_of[m][0], l = second_of[m][1];
+        w[3 + m] = f[0] * whole[3 + m] + f[k] * whole[l] + f[l] * whole[k] + f[3 + m] * whole[0];
+    }
+    return w[0] > 0;
 }
 
 /* The nodes that cover x, and for each w's parts and the basis at the node. */
-INLINE void gather(const RefNodes *nodes, int dims, int terms, const double x[3], RefShape *shape)
+INLINE void gather(const RefNodes *nodes, int dims, int terms, const double x[3],
+                   const double eye[3], RefShape *shape)
 {
     int near, count = 0, parts = parts_of(dims);
     const int *member = ref_nodes_near(nodes, x, &near);
@@ -75,11 +93,12 @@ INLINE void gather(const RefNodes *nodes, int dims, int terms, const double x[3]
         double reach = nodes->reach[member[n]], s[3] = {0};
         for (int d = 0; d < dims; d++) s[d] = (x[d] - at[d]) / reach;
         if (!(fabs(s[0]) < 1 && fabs(s[1]) < 1 && fabs(s[2]) < 1)) continue;
-        if (scale == 0) scale = reach;
         double *w = shape->scratch + (size_t)count * (size_t)(parts + terms), *p = w + parts;
         weigh(dims, s, reach, w);
+        if (nodes->cut.pass && !cut(nodes, member[n], x, eye, w)) continue;
+        if (scale == 0) scale = reach;
         p[0] = 1;
-        for (int d = 0; d < dims; d++) p[1 + d] = (at[d] - x[d]) / scale;
+        for (int d = 0; terms > 1 && d < dims; d++) p[1 + d] = (at[d] - x[d]) / scale;
         if (terms > dims + 1)
             for (int i = 1, t = dims + 1; i <= dims; i++)
                 for (int j = i; j <= dims; j++) p[t++] = p[i] * p[j];
@@ -170,7 +189,7 @@ INLINE bool shape_at(int dims, int terms, RefShape *shape)
     if (!factorise(terms, A[0], L, S)) return false;
     solve(terms, L, S, gamma[0]);
     for (int k = 1; k <= dims; k++) {
-        gamma[k][k] = 1 / shape->value[0];
+        if (terms > 1) gamma[k][k] = 1 / shape->value[0];
         subtract_product(terms, A[k], gamma[0], gamma[k]);
         solve(terms, L, S, gamma[k]);
     }
@@ -193,30 +212,39 @@ INLINE bool shape_at(int dims, int terms, RefShape *shape)
 }
 
 INLINE bool gather_and_shape(const RefNodes *nodes, int dims, int terms, const double x[3],
-                             RefShape *shape)
+                             const double eye[3], RefShape *shape)
 {
-    gather(nodes, dims, terms, x, shape);
+    gather(nodes, dims, terms, x, eye, shape);
     return shape->count >= terms && shape_at(dims, terms, shape);
 }
 
-static bool shape_of(const RefNodes *nodes, RefBasis basis, const double x[3], RefShape *shape)
+static bool shape_of(const RefNodes *nodes, RefBasis basis, const double x[3], const double eye[3],
+                     RefShape *shape)
 {
     switch (basis) {
     case REF_MLS_LINEAR:
-        return gather_and_shape(nodes, 3, REF_MLS_LINEAR, x, shape);
+        return gather_and_shape(nodes, 3, REF_MLS_LINEAR, x, eye, shape);
     case REF_MLS_QUADRATIC:
-        return gather_and_shape(nodes, 3, REF_MLS_QUADRATIC, x, shape);
+        return gather_and_shape(nodes, 3, REF_MLS_QUADRATIC, x, eye, shape);
+    case REF_MLS_PLANE_CONSTANT:
+        return gather_and_shape(nodes, 2, REF_MLS_PLANE_CONSTANT, x, eye, shape);
     case REF_MLS_PLANE_LINEAR:
-        return gather_and_shape(nodes, 2, REF_MLS_PLANE_LINEAR, x, shape);
+        return gather_and_shape(nodes, 2, REF_MLS_PLANE_LINEAR, x, eye, shape);
     case REF_MLS_PLANE_QUADRATIC:
-        return gather_and_shape(nodes, 2, REF_MLS_PLANE_QUADRATIC, x, shape);
+        return gather_and_shape(nodes, 2, REF_MLS_PLANE_QUADRATIC, x, eye, shape);
     }
     return false;
 }
 
 bool ref_mls_at(const RefNodes *nodes, RefBasis basis, const double x[3], RefShape *shape)
 {
-    bool defined = shape_of(nodes, basis, x, shape);
+    return ref_mls_seen_from(nodes, basis, x, x, shape);
+}
+
+bool ref_mls_seen_from(const RefNodes *nodes, RefBasis basis, const double x[3],
+                       const double eye[3], RefShape *shape)
+{
+    bool defined = shape_of(nodes, basis, x, eye, shape);
     if (!defined) shape->count = 0;
     return defined;
 }

@@ -8,7 +8,8 @@
 typedef enum { /* the number of its terms */
                REF_MLS_LINEAR = 4,
                REF_MLS_QUADRATIC = 10,
-               REF_MLS_PLANE_LINEAR = 3, /* for nodes in a plane */
+               REF_MLS_PLANE_CONSTANT = 1, /* for nodes in a plane */
+               REF_MLS_PLANE_LINEAR = 3,
                REF_MLS_PLANE_QUADRATIC = 6
 } RefBasis;
 
@@ -35,6 +36,15 @@ void ref_shape_free(RefShape *shape);
 bool ref_mls_at(const RefNodes *nodes, RefBasis basis, const double x[3], RefShape *shape);
 
 #define REF_LEAST_PIVOT 1e-3
+
+/* In a plane with cracks: at x as `eye` sees the nodes, which is a place beside x, maybe on the
+ * other side of a crack. What cracks let through is a constant then. */
+bool ref_mls_seen_from(const RefNodes *nodes, RefBasis basis, const double x[3],
+                       const double eye[3], RefShape *shape);
+
+/* meshless eq. 13, the spline of the weights, by the signed s; the slopes are its first and second
+ * derivative. */
+double ref_mls_spline(double s, double slope[2]);
 
 /* Linear functions of the nodal parameters: what constraints bind (meshless section 5.3.3). MLS
  * shape functions are no Kronecker delta, so a displacement at a point is a sum over the nodes that

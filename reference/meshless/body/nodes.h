@@ -22,6 +22,15 @@ static inline void ref_seam_cross(const RefSeam *seam, const double theta[2], do
     for (int d = 0; d < 2; d++) there[d] = seam->shift[d] + (seam->turned ? -theta[d] : theta[d]);
 }
 
+/* Cracks that cut covers: what of a node's weight gets from the node's place `from` to x. Writes
+ * that share's value, slopes and second derivatives (11, 22, 12) by x and returns true, or false
+ * where nothing does. `reach` is the node's. */
+typedef struct {
+    bool (*pass)(const void *cracks, const double x[3], const double from[3], double reach,
+                 double part[6]);
+    const void *cracks;
+} RefCut;
+
 typedef struct {
     long count;
     double (*position)[3]; /* [count + images] */
@@ -29,6 +38,7 @@ typedef struct {
     long images;           /* ref_nodes_bin() makes them */
     int *owner; /* [count + images] the node that each is; NULL: each itself, no images */
     bool plane; /* of a shell */
+    RefCut cut; /* pass is NULL where covers are whole */
     int seams;
     const RefSeam *seam; /* [seams] the caller's, as long as reaches change */
     double low[3], bin;  /* the bins' corner and edge */

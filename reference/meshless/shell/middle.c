@@ -89,3 +89,15 @@ RefFrame ref_middle_at(const double (*X)[3], int count, const int *node, const d
     complete(&frame);
     return frame;
 }
+
+long ref_middle_areas(const double (*X)[3], RefSamples *samples)
+{
+    for (long p = 0; p < samples->count; p++) {
+        long from = samples->start[p];
+        RefFrame frame = ref_middle_at(X, (int)(samples->start[p + 1] - from), samples->node + from,
+                                       (const double(*)[6])(samples->part + from));
+        samples->area[p] = frame.area * samples->weight[p];
+        if (!(samples->area[p] > 0)) return p;
+    }
+    return -1;
+}

@@ -11,68 +11,102 @@ enum { ORDER = 3, PARTS = 2, ALONG = ORDER * PARTS };
 
 void ref_samples_free(RefSamples *samples)
 {
-    sm_free_all(samples->theta, samples->weight, samples->start, samples->node, samples->part);
+    sm_free_all(samples->theta, samples->weight, samples->area, samples->start, samples->node,
+                samples->part);
     *samples = (RefSamples){0};
 }
 
-static void place(const RefQuadtree *tree, RefSamples *samples)
+/* Appends a cell's points. */
+static void place(const RefQuadtree *tree, const RefCell *cell, RefSamples *samples)
 {
-    double at[ORDER], weight[ORDER];
+    double at[ORDER], weight[ORDER], middle[2], edge[2];
     ref_gauss_rule(ORDER, at, weight);
-    for (long c = 0; c < tree->count; c++) {
-        double middle[2], edge[2];
-        if (tree->cell[c].child >= 0) continue;
-        ref_quadtree_cell(tree, tree->cell + c, middle, edge);
-        for (int n = 0; n < REF_SAMPLES_PER_CELL; n++, samples->count++) {
-            int which[2] = {n % ALONG, n / ALONG};
-            double area = edge[0] * edge[1] / (PARTS * PARTS);
-            for (int d = 0; d < 2; d++) {
-                int part = which[d] / ORDER, point = which[d] % ORDER;
-                samples->theta[samples->count][d] =
-                    middle[d] + edge[d] * ((part + 0.5 + at[point]) / PARTS - 0.5);
-                area *= weight[point];
-            }
-            samples->weight[samples->count] = area;
+    ref_quadtree_cell(tree, cell, middle, edge);
+    for (int n = 0; n < REF_SAMPLES_PER_CELL; n++, samples->count++) {
+        int which[2] = {n % ALONG, n / ALONG};
+        double area = edge[0] * edge[1] / (PARTS * PARTS);
+        for (int d = 0; d < 2; d++) {
+            int part = which[d] / ORDER, point = which[d] % ORDER;
+            samples->theta[samples->count][d] =
+                middle[d] + edge[d] * ((part + 0.5 + at[point]) / PARTS - 0.5);
+            area *= weight[point];
         }
+        samples->weight[samples->count] = area;
     }
 }
 
-static void evaluate(const RefNodes *nodes, RefBasis basis, RefSamples *samples)
+int ref_samples_shape(const RefNodes *nodes, RefBasis basis, double edge, const double x[3],
+                      RefShape *shape)
 {
-    RefShape shape = ref_shape_create(nodes);
+    static const RefBasis lower[] = {REF_MLS_PLANE_LINEAR, REF_MLS_PLANE_CONSTANT};
+    const double eye[3] = {x[0] + 1.3e-6 * edge, x[1] + 0.7e-6 * edge, 0};
+    if (ref_mls_at(nodes, basis, x, shape)) return basis;
+    if (!nodes->cut.pass) return 0;
+    for (int n = 0; n < 2; n++)
+        if (lower[n] < basis && ref_mls_at(nodes, lower[n], x, shape)) return lower[n];
+    if (ref_mls_seen_from(nodes, basis, x, eye, shape)) return basis;
+    for (int n = 0; n < 2; n++)
+        if (lower[n] < basis && ref_mls_seen_from(nodes, lower[n], x, eye, shape)) return lower[n];
+    return 0;
+}
+
+void ref_samples_part(const RefShape *shape, int n, double part[6])
+{
+    part[0] = shape->value[n];
+    for (int d = 0; d < 2; d++) part[1 + d] = shape->gradient[n][d];
+    for (int m = 0; m < 3; m++) part[3 + m] = shape->second[n][m];
+}
+
+static void evaluate(const RefNodes *nodes, RefBasis basis, double edge, RefShape *shape,
+                     RefSamples *samples)
+{
     long end = 0, room = 0, part_room = 0;
     for (long p = 0; p < samples->count; p++) {
-        ref_mls_at(nodes, basis, samples->theta[p], &shape);
-        sm_make_room(samples->node, room, end + shape.count);
-        sm_make_room(samples->part, part_room, end + shape.count);
-        for (int n = 0; n < shape.count; n++, end++) {
-            double *part = samples->part[end];
-            samples->node[end] = shape.node[n];
-            part[0] = shape.value[n];
-            for (int d = 0; d < 2; d++) part[1 + d] = shape.gradient[n][d];
-            for (int m = 0; m < 3; m++) part[3 + m] = shape.second[n][m];
+        ref_samples_shape(nodes, basis, edge, samples->theta[p], shape);
+        sm_make_room(samples->node, room, end + shape->count);
+        sm_make_room(samples->part, part_room, end + shape->count);
+        for (int n = 0; n < shape->count; n++, end++) {
+            samples->node[end] = shape->node[n];
+            ref_samples_part(shape, n, samples->part[end]);
         }
         samples->start[p + 1] = end;
     }
-    ref_shape_free(&shape);
+}
+
+static RefSamples create(long points)
+{
+    size_t count = (size_t)points;
+    return (RefSamples){.theta = sm_alloc(count, sizeof(double[3])),
+                        .weight = sm_alloc(count, sizeof(double)),
+                        .area = sm_alloc(count, sizeof(double)),
+                        .start = sm_alloc(count + 1, sizeof(long))};
+}
+
+void ref_samples_of(const RefQuadtree *tree, long cell, const RefNodes *nodes, RefBasis basis,
+                    RefShape *shape, RefSamples *samples)
+{
+    *samples = create(REF_SAMPLES_PER_CELL);
+    place(tree, tree->cell + cell, samples);
+    evaluate(nodes, basis, tree->unit[0] * tree->cell[cell].size, shape, samples);
 }
 
 SmCode ref_samples_take(const RefQuadtree *tree, RefNodes *nodes, RefBasis basis,
                         RefSamples *samples, SmError *error)
 {
-    size_t points = (size_t)tree->leaves * REF_SAMPLES_PER_CELL;
-    *samples = (RefSamples){.theta = sm_alloc(points, sizeof(double[3])),
-                            .weight = sm_alloc(points, sizeof(double)),
-                            .start = sm_alloc(points + 1, sizeof(long))};
-    place(tree, samples);
+    long points = tree->leaves * REF_SAMPLES_PER_CELL;
+    *samples = create(points);
+    for (long c = 0; c < tree->count; c++)
+        if (tree->cell[c].child < 0) place(tree, tree->cell + c, samples);
     long bad = ref_mls_cover(nodes, basis, samples->count, (const double(*)[3])samples->theta);
     if (bad == 0) {
-        evaluate(nodes, basis, samples);
+        RefShape shape = ref_shape_create(nodes);
+        evaluate(nodes, basis, 0, &shape, samples);
+        ref_shape_free(&shape);
         return SM_OK;
     }
     ref_samples_free(samples);
     return sm_fail(error, SM_INPUT,
-                   "%ld of the shell's %zu integration points are covered by too few of its %ld "
+                   "%ld of the shell's %ld integration points are covered by too few of its %ld "
                    "nodes, or by nodes in a line: give it more nodes",
                    bad, points, nodes->count);
 }

@@ -13,7 +13,8 @@ enum { REF_SAMPLES_PER_CELL = 36 };
 typedef struct {
     long count;         /* terminal cell by terminal cell */
     double (*theta)[3]; /* [count], with a third coordinate of 0 */
-    double *weight;     /* [count] area in the plane */
+    double *weight;     /* [count] area in the plane, */
+    double *area;       /* [count] and on the middle surface (ref_middle_areas()) */
     long *start;        /* [count + 1] */
     int *node;          /* [start[count]] as in RefShape */
     double (*part)[6];  /* [start[count]] phi, phi,1, phi,2, phi,11, phi,22, phi,12 */
@@ -24,6 +25,19 @@ typedef struct {
 SmCode ref_samples_take(const RefQuadtree *tree, RefNodes *nodes, RefBasis basis,
                         RefSamples *samples, SmError *error);
 void ref_samples_free(RefSamples *samples);
+
+/* The same of one terminal cell, with covers as they are. Where cracks leave a sample too few nodes
+ * it has functions of a lower basis, and where they leave it no node, none. The caller frees. */
+void ref_samples_of(const RefQuadtree *tree, long cell, const RefNodes *nodes, RefBasis basis,
+                    RefShape *shape, RefSamples *samples);
+
+/* The shape functions at a place of a cell whose edge is `edge`, with lower bases as above; at a
+ * place on a crack as one beside it sees them. Returns the basis, or 0 where no node is seen. */
+int ref_samples_shape(const RefNodes *nodes, RefBasis basis, double edge, const double x[3],
+                      RefShape *shape);
+
+/* A sample's six parts of function n. */
+void ref_samples_part(const RefShape *shape, int n, double part[6]);
 
 /* The nodes that a cell's samples know, rising, into `node`; returns how many. `number` is -1 of
  * all nodes before, and of these their place in `node` afterwards. `cell` counts terminal ones. */

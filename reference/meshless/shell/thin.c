@@ -5,21 +5,25 @@
 
 #include "../../../lib/vector.h"
 
-/* One terminal cell: its nodes, and the sums of their pairs. */
-typedef struct {
-    int count;
-    int *node, *number;
-    double (*sum)[10]; /* [count][count] mass and block, of the upper half */
-    double (*row)[18]; /* [covers of a sample] the strains' rows, weighted */
-} Cell;
+/* A surface that has less of its area by this share is none. */
+static const double LEAST_AREA = 1e-3;
+
+void ref_thin_law(const double g[3], double nu, double H[3][3])
+{
+    H[0][0] = g[0] * g[0];
+    H[1][1] = g[1] * g[1];
+    H[2][2] = ((1 - nu) * g[0] * g[1] + (1 + nu) * g[2] * g[2]) / 2;
+    H[0][1] = H[1][0] = nu * g[0] * g[1] + (1 - nu) * g[2] * g[2];
+    H[0][2] = H[2][0] = g[0] * g[2];
+    H[1][2] = H[2][1] = g[1] * g[2];
+}
 
 /* The upper factor G of H = G^T G, H the constitutive matrix for vectors (11, 22, 2 x 12), of the
  * inverse metric (11, 22, 12). */
 static void factor_of(const double g[3], double nu, double G[3][3])
 {
-    double H[3][3] = {{g[0] * g[0], nu * g[0] * g[1] + (1 - nu) * g[2] * g[2], g[0] * g[2]},
-                      {0, g[1] * g[1], g[1] * g[2]},
-                      {0, 0, ((1 - nu) * g[0] * g[1] + (1 + nu) * g[2] * g[2]) / 2}};
+    double H[3][3];
+    ref_thin_law(g, nu, H);
     memset(G, 0, sizeof(double[3][3]));
     for (int i = 0; i < 3; i++)
         for (int j = i; j < 3; j++) {
@@ -29,8 +33,7 @@ static void factor_of(const double g[3], double nu, double G[3][3])
         }
 }
 
-/* What a node's parameters do to the strains: B, three rows of membrane, three of bending. */
-static void strains(const RefFrame *frame, const double part[6], double B[6][3])
+void ref_thin_strains(const RefFrame *frame, const double part[6], double B[6][3])
 {
     static const double times[3] = {1, 1, 2};
     const double(*a)[3] = frame->tangent;
@@ -60,7 +63,8 @@ static void weigh_rows(const double B[6][3], const double G[3][3], const double 
 }
 
 /* All pairs I <= J of a sample's functions; a node that is there twice meets itself, both ways. */
-static void add_sample(const RefSamples *samples, long p, double mass, Cell *cell)
+static void add_sample(const RefSamples *samples, long p, double mass, bool stiff,
+                       const RefThinWork *work, RefElement *element)
 {
     const int *node = samples->node + samples->start[p];
     const double(*part)[6] = (const double(*)[6])(samples->part + samples->start[p]);
@@ -68,79 +72,103 @@ static void add_sample(const RefSamples *samples, long p, double mass, Cell *cel
     for (int e = 0; e < count; e++)
         for (int f = 0; f < count; f++) {
             if (node[e] > node[f]) continue;
-            const double *left = cell->row[e], *right = cell->row[f];
+            const double *left = work->row[e], *right = work->row[f];
             double *sum =
-                cell->sum[(long)cell->number[node[e]] * cell->count + cell->number[node[f]]];
+                element->sum[(long)work->number[node[e]] * element->count + work->number[node[f]]];
             sum[0] += mass * part[e][0] * part[f][0];
-            for (int i = 0; i < 6; i++)
+            for (int i = 0; stiff && i < 6; i++)
                 for (int a = 0; a < 3; a++)
                     for (int b = 0; b < 3; b++)
                         sum[1 + 3 * a + b] += left[3 * i + a] * right[3 * i + b];
         }
 }
 
-/* Adds a sample's share; false where the surface has no area. */
+/* Adds a sample's share; false where that is no stiffness. */
 static bool integrate(const double (*X)[3], const RefSamples *samples, long p, double t,
-                      const RefMaterial *material, Cell *cell)
+                      const RefMaterial *material, RefThinWork *work, RefElement *element)
 {
     long from = samples->start[p];
     int count = (int)(samples->start[p + 1] - from);
     const double(*part)[6] = (const double(*)[6])(samples->part + from);
     RefFrame frame = ref_middle_at(X, count, samples->node + from, part);
-    double nu = material->poisson, G[3][3], B[6][3], area = frame.area * samples->weight[p];
+    double nu = material->poisson, G[3][3], B[6][3], area = samples->area[p];
     double membrane = area * material->young * t / (1 - nu * nu);
     double weight[2] = {sqrt(membrane), sqrt(membrane / 12) * t};
-    if (!(frame.area > 0)) return false;
-    factor_of(frame.inverse, nu, G);
-    for (int e = 0; e < count; e++) {
-        strains(&frame, part[e], B);
-        weigh_rows((const double(*)[3])B, (const double(*)[3])G, weight, cell->row[e]);
+    bool stiff = frame.area * samples->weight[p] > LEAST_AREA * area;
+    if (count > work->rows) {
+        work->rows = 2 * count;
+        work->row = sm_realloc(work->row, (size_t)work->rows, sizeof *work->row);
     }
-    add_sample(samples, p, area * t, cell);
-    return true;
+    if (stiff) factor_of(frame.inverse, nu, G);
+    for (int e = 0; stiff && e < count; e++) {
+        ref_thin_strains(&frame, part[e], B);
+        weigh_rows((const double(*)[3])B, (const double(*)[3])G, weight, work->row[e]);
+    }
+    add_sample(samples, p, area * t, stiff, work, element);
+    return stiff;
 }
 
-static void add_cell(const Cell *cell, RefPairs *pairs)
+RefThinWork ref_thin_work(long nodes)
 {
-    for (int a = 0; a < cell->count; a++) {
-        long at = pairs->start[cell->node[a]];
-        for (int b = a; b < cell->count; b++) {
-            const double *sum = cell->sum[(long)a * cell->count + b];
-            while (pairs->partner[at] != cell->node[b]) at++;
+    RefThinWork work = {.node = sm_alloc((size_t)nodes, sizeof(int)),
+                        .number = sm_alloc((size_t)nodes, sizeof(int))};
+    for (long n = 0; n < nodes; n++) work.number[n] = -1;
+    return work;
+}
+
+void ref_thin_work_free(RefThinWork *work)
+{
+    sm_free_all(work->node, work->number, work->row);
+    *work = (RefThinWork){.rows = 0};
+}
+
+void ref_element_free(RefElement *element)
+{
+    sm_free_all(element->node, element->sum);
+    *element = (RefElement){.count = 0};
+}
+
+int ref_thin_element(const double (*X)[3], const RefSamples *samples, long cell, double thickness,
+                     const RefMaterial *material, RefThinWork *work, RefElement *element)
+{
+    int soft = 0, count = ref_samples_nodes(samples, cell, work->node, work->number);
+    *element = (RefElement){.count = count,
+                            .node = sm_alloc((size_t)count, sizeof(int)),
+                            .sum = sm_alloc((size_t)count * (size_t)count, sizeof(double[10]))};
+    for (int n = 0; n < count; n++) element->node[n] = work->node[n];
+    for (long p = cell * REF_SAMPLES_PER_CELL; p < (cell + 1) * REF_SAMPLES_PER_CELL; p++)
+        soft += !integrate(X, samples, p, thickness, material, work, element);
+    for (int n = 0; n < count; n++) work->number[element->node[n]] = -1;
+    return soft;
+}
+
+static void add_element(const RefElement *element, RefPairs *pairs)
+{
+    for (int a = 0; a < element->count; a++) {
+        long at = pairs->start[element->node[a]];
+        for (int b = a; b < element->count; b++) {
+            const double *sum = element->sum[(long)a * element->count + b];
+            while (pairs->partner[at] != element->node[b]) at++;
             pairs->mass[at] += sum[0];
             for (int k = 0; k < 9; k++) pairs->block[at][k] += sum[1 + k];
         }
     }
 }
 
-/* All cells; returns the first sample at which the surface has no area, or -1. */
-static long integrate_all(const double (*X)[3], const RefSamples *samples, double thickness,
+static void integrate_all(const double (*X)[3], const RefSamples *samples, double thickness,
                           const RefMaterial *material, RefPairs *pairs)
 {
-    size_t nodes = (size_t)pairs->count;
-    Cell cell = {.node = sm_alloc(nodes, sizeof(int)), .number = sm_alloc(nodes, sizeof(int))};
-    long bad = -1, most = 0;
-    for (size_t n = 0; n < nodes; n++) cell.number[n] = -1;
-    for (long p = 0; p < samples->count; p++)
-        most = samples->start[p + 1] - samples->start[p] > most
-                   ? samples->start[p + 1] - samples->start[p]
-                   : most;
-    cell.row = sm_alloc((size_t)most, sizeof *cell.row);
-    for (long c = 0; bad < 0 && c < samples->count / REF_SAMPLES_PER_CELL; c++) {
-        cell.count = ref_samples_nodes(samples, c, cell.node, cell.number);
-        size_t all = (size_t)cell.count * (size_t)cell.count;
-        cell.sum = sm_realloc(cell.sum, all, sizeof *cell.sum);
-        memset(cell.sum, 0, all * sizeof *cell.sum);
-        for (long p = c * REF_SAMPLES_PER_CELL; bad < 0 && p < (c + 1) * REF_SAMPLES_PER_CELL; p++)
-            if (!integrate(X, samples, p, thickness, material, &cell)) bad = p;
-        add_cell(&cell, pairs);
-        for (int n = 0; n < cell.count; n++) cell.number[cell.node[n]] = -1;
+    RefThinWork work = ref_thin_work(pairs->count);
+    for (long c = 0; c < samples->count / REF_SAMPLES_PER_CELL; c++) {
+        RefElement element;
+        ref_thin_element(X, samples, c, thickness, material, &work, &element);
+        add_element(&element, pairs);
+        ref_element_free(&element);
     }
-    sm_free_all(cell.node, cell.number, cell.sum, cell.row);
-    return bad;
+    ref_thin_work_free(&work);
 }
 
-SmCode ref_thin_build(const double (*X)[3], const RefSamples *samples, long nodes, double thickness,
+SmCode ref_thin_build(const double (*X)[3], RefSamples *samples, long nodes, double thickness,
                       const RefMaterial *material, RefMatrices *matrices, SmError *error)
 {
     *matrices = (RefMatrices){0};
@@ -150,11 +178,12 @@ SmCode ref_thin_build(const double (*X)[3], const RefSamples *samples, long node
     if (code != SM_OK) return code;
     RefPairs pairs = ref_samples_pairs(samples, nodes);
     code = ref_pairs_check(&pairs, error);
-    long bad = code == SM_OK ? integrate_all(X, samples, thickness, material, &pairs) : -1;
+    long bad = code == SM_OK ? ref_middle_areas(X, samples) : -1;
     if (bad >= 0)
         code = sm_fail(error, SM_INPUT,
                        "the shell's middle surface has no area at the parameters (%g, %g)",
                        samples->theta[bad][0], samples->theta[bad][1]);
+    if (code == SM_OK) integrate_all(X, samples, thickness, material, &pairs);
     if (code == SM_OK) ref_pairs_matrices(&pairs, material->density, matrices);
     ref_pairs_free(&pairs);
     return code;

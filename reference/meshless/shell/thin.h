@@ -12,10 +12,43 @@
 
 #include "middle.h"
 
-/* Of a shell of this thickness, over the samples. Neither rotary inertia nor drilling stiffness.
- * O(samples * covers^2). The caller frees. Errors: matrices.h's of a material; SM_USAGE, a
+/* What the samples of one cell add to the matrices. */
+typedef struct {
+    int count;
+    int *node;         /* [count] rising */
+    double (*sum)[10]; /* [count][count] of nodes I <= J: mass without the density, then the block
+                          of I along a, J along b at 1 + 3 a + b */
+} RefElement;
+
+/* What ref_thin_element() works in; the caller frees. */
+typedef struct {
+    int *node, *number; /* [nodes] */
+    double (*row)[18];  /* the strains' rows, weighted, of one sample */
+    long rows;
+} RefThinWork;
+
+RefThinWork ref_thin_work(long nodes);
+void ref_thin_work_free(RefThinWork *work);
+
+/* Sums over the samples of one cell, which is counted among the terminal ones that `samples` has,
+ * of a shell of this thickness. Samples whose functions leave the surface there without an area
+ * have mass alone, and those without functions nothing; returns how many both are. O(samples *
+ * covers^2). The caller frees. */
+int ref_thin_element(const double (*X)[3], const RefSamples *samples, long cell, double thickness,
+                     const RefMaterial *material, RefThinWork *work, RefElement *element);
+void ref_element_free(RefElement *element);
+
+/* The strains of nodes' parameters: B, three rows of membrane (11, 22, twice 12), three of bending,
+ * of a function with these parts. */
+void ref_thin_strains(const RefFrame *frame, const double part[6], double B[6][3]);
+
+/* What strains are multiplied by under the integral, H as rows of (11, 22, 12). */
+void ref_thin_law(const double inverse[3], double poisson, double H[3][3]);
+
+/* Of a shell of this thickness, over the samples, whose areas it fills in. Neither rotary inertia
+ * nor drilling stiffness. The caller frees. Errors: matrices.h's of a material; SM_USAGE, a
  * thickness that is not above 0; SM_INPUT, a surface without area at a sample. */
-SmCode ref_thin_build(const double (*X)[3], const RefSamples *samples, long nodes, double thickness,
+SmCode ref_thin_build(const double (*X)[3], RefSamples *samples, long nodes, double thickness,
                       const RefMaterial *material, RefMatrices *matrices, SmError *error);
 
 #endif

@@ -1,0 +1,340 @@
+#include "crack.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../body/mls.h"
+
+/* Where b is this share of a node's reach, half a cell of covers four cells wide. */
+static const double SOFT = 0.25;
+/* Pieces that meet others end this share of their length beyond them. */
+static const double OVERSHOOT = 1e-6;
+
+static double cross(const double a[2], const double b[2])
+{
+    return a[0] * b[1] - a[1] * b[0];
+}
+
+static void way_from(const double a[2], const double b[2], double way[2])
+{
+    for (int d = 0; d < 2; d++) way[d] = b[d] - a[d];
+}
+
+static double length_of(const double a[2])
+{
+    return hypot(a[0], a[1]);
+}
+
+void ref_cracks_create(const RefChart *chart, double margin, RefCracks *cracks)
+{
+    *cracks = (RefCracks){.chart = chart, .margin = margin};
+    double longer = fmax(chart->high[0] - chart->low[0], chart->high[1] - chart->low[1]);
+    cracks->bin = fmax(margin / 2, longer / 256);
+    for (int d = 0; d < 2; d++) {
+        cracks->corner[d] = chart->low[d];
+        cracks->size[d] = (int)((chart->high[d] - chart->low[d]) / cracks->bin) + 1;
+    }
+    long bins = (long)cracks->size[0] * cracks->size[1];
+    sm_csr_adopt(&cracks->near, 0, sm_alloc(1, sizeof(long)), NULL, NULL, 0);
+    sm_csr_grow(&cracks->near, bins);
+}
+
+void ref_cracks_free(RefCracks *cracks)
+{
+    sm_csr_free(&cracks->near);
+    sm_free_all(cracks->piece, cracks->arm);
+    *cracks = (RefCracks){.chart = NULL};
+}
+
+int ref_cracks_start(RefCracks *cracks, const double at[2], int parent)
+{
+    sm_make_room(cracks->arm, cracks->arm_room, cracks->arms + 1);
+    cracks->arm[cracks->arms] =
+        (RefCrackArm){.tip = {at[0], at[1]}, .last = -1, .parent = parent, .open = true};
+    return (int)cracks->arms++;
+}
+
+/* The bins that a box touches, within `margin`. */
+static void bins_of(const RefCracks *cracks, const double low[2], const double high[2],
+                    double margin, int first[2], int last[2])
+{
+    for (int d = 0; d < 2; d++) {
+        double from = (low[d] - margin - cracks->corner[d]) / cracks->bin;
+        double to = (high[d] + margin - cracks->corner[d]) / cracks->bin;
+        first[d] = (int)fmin(fmax(floor(from), 0), cracks->size[d] - 1);
+        last[d] = (int)fmin(fmax(floor(to), 0), cracks->size[d] - 1);
+    }
+}
+
+static void box_of(const RefCrackPiece *piece, double low[2], double high[2])
+{
+    for (int d = 0; d < 2; d++) {
+        low[d] = fmin(piece->end[0][d], piece->end[1][d]);
+        high[d] = fmax(piece->end[0][d], piece->end[1][d]);
+    }
+}
+
+static void add_piece(RefCracks *cracks, int arm, const double end[2][2])
+{
+    RefCrackArm *of = cracks->arm + arm;
+    RefCrackPiece piece = {.before = INFINITY,
+                           .arm = arm,
+                           .previous = of->last,
+                           .born = cracks->now,
+                           .changed = cracks->now};
+    double low[2], high[2];
+    int first[2], last[2];
+    memcpy(piece.end, end, sizeof piece.end);
+    box_of(&piece, low, high);
+    bins_of(cracks, low, high, cracks->margin, first, last);
+    of->last = (int)cracks->pieces;
+    for (int y = first[1]; y <= last[1]; y++)
+        for (int x = first[0]; x <= last[0]; x++)
+            sm_csr_add(&cracks->near, (long)y * cracks->size[0] + x, of->last, NULL);
+    sm_make_room(cracks->piece, cracks->piece_room, cracks->pieces + 1);
+    cracks->piece[cracks->pieces++] = piece;
+}
+
+/* Whether a box comes within the margin of the chart's rectangle. */
+static bool matters(const RefCracks *cracks, const double end[2][2])
+{
+    for (int d = 0; d < 2; d++)
+        if (fmax(end[0][d], end[1][d]) < cracks->chart->low[d] - cracks->margin ||
+            fmin(end[0][d], end[1][d]) > cracks->chart->high[d] + cracks->margin)
+            return false;
+    return true;
+}
+
+/* A piece and its images beyond seams. */
+static void add_pieces(RefCracks *cracks, int arm, const double end[2][2])
+{
+    add_piece(cracks, arm, end);
+    for (int s = 0; s < cracks->chart->seams; s++) {
+        const RefSeam *seam = cracks->chart->seam + s;
+        double there[2][2];
+        for (int e = 0; e < 2; e++)
+            for (int d = 0; d < 2; d++) there[e][d] = end[e][d] + seam->shift[d];
+        if (matters(cracks, (const double(*)[2])there))
+            add_piece(cracks, arm, (const double(*)[2])there);
+    }
+}
+
+/* The pieces that come within the margin of x. */
+static const int *near(const RefCracks *cracks, const double x[2], int *count)
+{
+    int first[2], last[2];
+    bins_of(cracks, x, x, 0, first, last);
+    long bin = (long)first[1] * cracks->size[0] + first[0];
+    *count = (int)(cracks->near.end[bin] - cracks->near.first[bin]);
+    return cracks->near.item + cracks->near.first[bin];
+}
+
+/* Moves the tip on: what is ahead of the arm's pieces grows by `more`. */
+static void lengthen(RefCracks *cracks, int arm, double more)
+{
+    double seen = SOFT * cracks->margin;
+    for (int p = cracks->arm[arm].last; p >= 0; p = cracks->piece[p].previous) {
+        RefCrackPiece *piece = cracks->piece + p;
+        if (piece->ahead < seen) piece->changed = cracks->now;
+        piece->ahead += more;
+    }
+}
+
+void ref_cracks_end(RefCracks *cracks, int arm)
+{
+    if (!cracks->arm[arm].open) return;
+    lengthen(cracks, arm, INFINITY);
+    cracks->arm[arm].open = false;
+}
+
+/* The share of the way a..b at which it meets a piece, if it does beyond its beginning. */
+static bool meets(const RefCrackPiece *piece, const double a[2], const double b[2], double *share)
+{
+    double way[2], along[2], to[2];
+    way_from(a, b, way);
+    way_from(piece->end[0], piece->end[1], along);
+    way_from(a, piece->end[0], to);
+    double turn = cross(way, along);
+    if (turn == 0) return false;
+    double t = cross(to, way) / turn;
+    *share = cross(to, along) / turn;
+    return t >= -OVERSHOOT && t <= 1 + OVERSHOOT && *share > 1e-9 && *share <= 1;
+}
+
+/* Whether an arm touches the place where another one begins or ends. */
+static bool begins_at(const RefCrackPiece *piece, const double at[2])
+{
+    for (int e = 0; e < 2; e++) {
+        double way[2];
+        way_from(piece->end[e], at, way);
+        if (length_of(way) == 0) return true;
+    }
+    return false;
+}
+
+RefCrackFate ref_cracks_grow(RefCracks *cracks, int arm, const double to[2])
+{
+    double end[2][2], way[2], share = 1;
+    RefCrackFate fate = REF_CRACK_GOES_ON;
+    int count;
+    memcpy(end[0], cracks->arm[arm].tip, sizeof end[0]);
+    memcpy(end[1], to, sizeof end[1]);
+    way_from(end[0], end[1], way);
+    const int *member = near(cracks, end[0], &count);
+    for (int n = 0; n < count; n++) {
+        const RefCrackPiece *piece = cracks->piece + member[n];
+        double there;
+        if (begins_at(piece, end[0]) || !meets(piece, end[0], to, &there)) continue;
+        if (there >= share) continue;
+        share = there;
+        fate = REF_CRACK_MEETS_CRACK;
+    }
+    if (fate == REF_CRACK_MEETS_CRACK)
+        for (int d = 0; d < 2; d++) end[1][d] = end[0][d] + (share + OVERSHOOT) * way[d];
+    double length = length_of(way) * fmin(share, 1), entered[2];
+    if (!(length > 0)) return fate;
+    lengthen(cracks, arm, length);
+    add_pieces(cracks, arm, (const double(*)[2])end);
+    memcpy(entered, end[1], sizeof entered);
+    if (!ref_chart_enter(cracks->chart, entered) && fate == REF_CRACK_GOES_ON)
+        fate = REF_CRACK_MEETS_RIM;
+    RefCrackArm *of = cracks->arm + arm;
+    memcpy(of->tip, entered, sizeof of->tip);
+    for (int d = 0; d < 2; d++) of->way[d] = way[d] / length_of(way);
+    of->length += length;
+    if (fate != REF_CRACK_GOES_ON) ref_cracks_end(cracks, arm);
+    return fate;
+}
+
+/* Whether the way from `from` to x meets a piece, ends counted in. */
+static bool crosses(const RefCrackPiece *piece, const double x[2], const double from[2])
+{
+    double along[2], way[2], a[2], b[2], to[2];
+    way_from(piece->end[0], piece->end[1], along);
+    way_from(from, x, way);
+    way_from(piece->end[0], from, a);
+    way_from(piece->end[0], x, b);
+    double sides[2] = {cross(along, a), cross(along, b)};
+    if ((sides[0] > 0 && sides[1] > 0) || (sides[0] < 0 && sides[1] < 0)) return false;
+    way_from(piece->end[1], from, to);
+    double ends[2] = {cross(way, a), cross(way, to)};
+    if ((ends[0] > 0 && ends[1] > 0) || (ends[0] < 0 && ends[1] < 0)) return false;
+    return cross(along, way) != 0;
+}
+
+/* What gets past a piece, which the way crosses, `ahead` of which the tip is; false: nothing. The
+ * crossing is at the share t = N / D of the piece, N and D linear in x. */
+static bool pass_piece(const RefCrackPiece *piece, double ahead, const double x[2],
+                       const double from[2], double width, double part[6])
+{
+    double along[2], way[2], start[2], slope[2], t_k[2];
+    way_from(piece->end[0], piece->end[1], along);
+    way_from(from, x, way);
+    way_from(piece->end[0], from, start);
+    double length = length_of(along), D = cross(along, way);
+    double t = fmin(fmax(cross(start, way) / D, 0), 1);
+    double s = (length * (1 - t) + ahead) / width, scale = -length / width;
+    if (!(s < 1)) return false;
+    const double N_k[2] = {-start[1], start[0]}, D_k[2] = {-along[1], along[0]};
+    for (int k = 0; k < 2; k++) t_k[k] = (N_k[k] - t * D_k[k]) / D;
+    part[0] = ref_mls_spline(s, slope);
+    for (int k = 0; k < 2; k++) part[1 + k] = slope[0] * scale * t_k[k];
+    for (int m = 0; m < 3; m++) {
+        int k = m == 1, l = m != 0;
+        double t_kl = -(t_k[k] * D_k[l] + t_k[l] * D_k[k]) / D;
+        part[3 + m] = slope[1] * scale * scale * t_k[k] * t_k[l] + slope[0] * scale * t_kl;
+    }
+    return true;
+}
+
+/* part *= f, with derivatives. */
+static void multiply(const double f[6], double part[6])
+{
+    double g[6];
+    memcpy(g, part, sizeof g);
+    part[0] = f[0] * g[0];
+    for (int k = 1; k < 3; k++) part[k] = f[0] * g[k] + f[k] * g[0];
+    for (int m = 0; m < 3; m++) {
+        int k = 1 + (m == 1), l = 1 + (m != 0);
+        part[3 + m] = f[0] * g[3 + m] + f[k] * g[l] + f[l] * g[k] + f[3 + m] * g[0];
+    }
+}
+
+static bool pass(const RefCracks *cracks, bool earlier, const double x[3], const double from[3],
+                 double reach, double part[6])
+{
+    static const double whole[6] = {1};
+    int count;
+    const int *member = near(cracks, x, &count);
+    memcpy(part, whole, sizeof whole);
+    for (int n = 0; n < count; n++) {
+        const RefCrackPiece *piece = cracks->piece + member[n];
+        double f[6], ahead = earlier ? piece->before : piece->ahead;
+        if ((earlier && piece->born == cracks->now) || !crosses(piece, x, from)) continue;
+        if (!pass_piece(piece, ahead, x, from, SOFT * reach, f)) return false;
+        multiply(f, part);
+    }
+    return true;
+}
+
+bool ref_cracks_pass(const void *cracks, const double x[3], const double from[3], double reach,
+                     double part[6])
+{
+    return pass(cracks, false, x, from, reach, part);
+}
+
+bool ref_cracks_passed(const void *cracks, const double x[3], const double from[3], double reach,
+                       double part[6])
+{
+    return pass(cracks, true, x, from, reach, part);
+}
+
+bool ref_cracks_changed(const RefCracks *cracks, const double x[2], const double from[2])
+{
+    int count;
+    const int *member = near(cracks, x, &count);
+    for (int n = 0; n < count; n++) {
+        const RefCrackPiece *piece = cracks->piece + member[n];
+        if (piece->changed == cracks->now && crosses(piece, x, from)) return true;
+    }
+    return false;
+}
+
+bool ref_cracks_stir(const RefCracks *cracks, const double low[2], const double high[2])
+{
+    int first[2], last[2];
+    bins_of(cracks, low, high, 0, first, last);
+    for (int y = first[1]; y <= last[1]; y++)
+        for (int x = first[0]; x <= last[0]; x++) {
+            long bin = (long)y * cracks->size[0] + x;
+            for (long e = cracks->near.first[bin]; e < cracks->near.end[bin]; e++)
+                if (cracks->piece[cracks->near.item[e]].changed == cracks->now) return true;
+        }
+    return false;
+}
+
+void ref_cracks_settle(RefCracks *cracks)
+{
+    cracks->now++;
+    for (long p = 0; p < cracks->pieces; p++) cracks->piece[p].before = cracks->piece[p].ahead;
+}
+
+double ref_cracks_distance(const RefCracks *cracks, const double x[2], int skip)
+{
+    int count;
+    const int *member = near(cracks, x, &count);
+    double least = cracks->margin;
+    for (int n = 0; n < count; n++) {
+        const RefCrackPiece *piece = cracks->piece + member[n];
+        double along[2], to[2];
+        if (piece->arm == skip) continue;
+        way_from(piece->end[0], piece->end[1], along);
+        way_from(piece->end[0], x, to);
+        double square = along[0] * along[0] + along[1] * along[1];
+        double t = fmin(fmax((along[0] * to[0] + along[1] * to[1]) / square, 0), 1);
+        for (int d = 0; d < 2; d++) to[d] -= t * along[d];
+        least = fmin(least, length_of(to));
+    }
+    return least;
+}

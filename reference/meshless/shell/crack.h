@@ -1,0 +1,86 @@
+/* crack.h - cracks of a shell: curves in the plane of its parameters, which cut the covers that
+ * they cross (meshless section 4.2).
+ *
+ * A crack is made of arms. An arm begins somewhere, alone, beside an arm that goes the other way,
+ * or on another arm, from which it branches; its other end is a tip, which may go on, until the arm
+ * meets a rim or another crack or is ended. Of a node's weight nothing gets across an arm but near
+ * its tip: c(s / b), where s is the length of the arm from the crossing to the tip, c the weights'
+ * spline and b a quarter of the node's reach (Organ, Fleming, Terry and Belytschko 1996, in the
+ * plane as Pauly et al. 2005 have it; square covers have two arguments, so that the weight is
+ * multiplied instead of its argument enlarged). An arm that goes beyond a seam goes on behind it.
+ */
+#ifndef REF_CRACK_H
+#define REF_CRACK_H
+
+#include "../../../lib/csr.h"
+#include "chart.h"
+
+/* A straight piece of an arm, or an image of one beyond a seam. */
+typedef struct {
+    double end[2][2];  /* the second is nearer to the tip */
+    double ahead;      /* length of the arm from there to the tip; infinite where there is no tip */
+    double before;     /* the same before the changes that are not settled yet */
+    int arm, previous; /* the piece of the arm that was made before this one, or -1 */
+    int born, changed; /* RefCracks.now at its making and its last change that may be seen */
+} RefCrackPiece;
+
+typedef struct {
+    double tip[2]; /* in the rectangle, but at a rim */
+    double way[2]; /* the last piece's direction, of unit length; zero: no piece yet */
+    double length;
+    int last;   /* its newest piece, or -1 */
+    int parent; /* the arm from which it branched, or -1 */
+    bool open;  /* has a tip */
+} RefCrackArm;
+
+typedef struct {
+    const RefChart *chart; /* the caller's */
+    double margin;         /* the largest reach of a cover */
+    long pieces, piece_room, arms, arm_room;
+    RefCrackPiece *piece;  /* [pieces] */
+    RefCrackArm *arm;      /* [arms] */
+    int now;               /* counts settlements */
+    double corner[2], bin; /* private: bins of the pieces within the margin */
+    int size[2];
+    SmCsr near;
+} RefCracks;
+
+/* No cracks. No cover's reach is above `margin`. The caller frees. */
+void ref_cracks_create(const RefChart *chart, double margin, RefCracks *cracks);
+void ref_cracks_free(RefCracks *cracks);
+
+/* A new arm without a piece, from a place of the rectangle; returns its number. `parent` is an arm
+ * that passes there, or -1. */
+int ref_cracks_start(RefCracks *cracks, const double at[2], int parent);
+
+typedef enum { REF_CRACK_GOES_ON, REF_CRACK_MEETS_RIM, REF_CRACK_MEETS_CRACK } RefCrackFate;
+
+/* Adds a piece from an arm's tip straight to `to`, which may be beyond a seam. Where it meets
+ * another crack or a rim, it stops, and the arm is ended. O(pieces near). */
+RefCrackFate ref_cracks_grow(RefCracks *cracks, int arm, const double to[2]);
+
+/* Ends an arm: nothing gets across any more near where its tip was. */
+void ref_cracks_end(RefCracks *cracks, int arm);
+
+/* What gets from `from` to x of a weight of this reach: RefCut's pass() for nodes.h. x is in the
+ * rectangle. O(pieces within the margin of x). */
+bool ref_cracks_pass(const void *cracks, const double x[3], const double from[3], double reach,
+                     double part[6]);
+
+/* The same before the changes that are not settled yet. */
+bool ref_cracks_passed(const void *cracks, const double x[3], const double from[3], double reach,
+                       double part[6]);
+
+/* Whether changes that are not settled may change what gets from `from` to x. */
+bool ref_cracks_changed(const RefCracks *cracks, const double x[2], const double from[2]);
+
+/* Whether there may be such changes for any x of a box, from anywhere within the margin. */
+bool ref_cracks_stir(const RefCracks *cracks, const double low[2], const double high[2]);
+
+/* All changes become what was before. O(pieces). */
+void ref_cracks_settle(RefCracks *cracks);
+
+/* How far the nearest piece is, at most the margin; `skip` is an arm that does not count, or -1. */
+double ref_cracks_distance(const RefCracks *cracks, const double x[2], int skip);
+
+#endif
