@@ -76,16 +76,32 @@ static void complete(RefFrame *frame)
         for (int n = 0; n < 2; n++) frame->symbol[m][n] = sm_dot(up[n], frame->second[m]);
 }
 
+/* One function's share of x and its derivatives. */
+static void add(const double X[3], const double part[6], RefFrame *frame)
+{
+    for (int d = 0; d < 3; d++) {
+        frame->x[d] += part[0] * X[d];
+        for (int k = 0; k < 2; k++) frame->tangent[k][d] += part[1 + k] * X[d];
+        for (int m = 0; m < 3; m++) frame->second[m][d] += part[3 + m] * X[d];
+    }
+}
+
 RefFrame ref_middle_at(const double (*X)[3], int count, const int *node, const double (*part)[6])
 {
     RefFrame frame = {.area = 0};
-    for (int n = 0; n < count; n++)
-        for (int d = 0; d < 3; d++) {
-            double X_d = X[node[n]][d];
-            frame.x[d] += part[n][0] * X_d;
-            for (int k = 0; k < 2; k++) frame.tangent[k][d] += part[n][1 + k] * X_d;
-            for (int m = 0; m < 3; m++) frame.second[m][d] += part[n][3 + m] * X_d;
-        }
+    for (int n = 0; n < count; n++) add(X[node[n]], part[n], &frame);
+    complete(&frame);
+    return frame;
+}
+
+RefFrame ref_middle_of(const double (*X)[3], const RefShape *shape)
+{
+    RefFrame frame = {.area = 0};
+    for (int n = 0; n < shape->count; n++) {
+        double part[6];
+        ref_samples_part(shape, n, part);
+        add(X[shape->node[n]], part, &frame);
+    }
     complete(&frame);
     return frame;
 }

@@ -25,6 +25,8 @@ SmCode ref_middle_fit(const RefChart *chart, const RefSamples *samples, long nod
 /* The surface where `count` functions are not zero: their nodes and parts as in RefSamples. */
 RefFrame ref_middle_at(const double (*X)[3], int count, const int *node, const double (*part)[6]);
 
+RefFrame ref_middle_of(const double (*X)[3], const RefShape *shape);
+
 /* Fills in the samples' areas; returns the first without one, or -1. */
 long ref_middle_areas(const double (*X)[3], RefSamples *samples);
 

@@ -115,6 +115,14 @@ static void balance(RefQuadtree *tree)
     }
 }
 
+bool ref_quadtree_split(RefQuadtree *tree, long cell)
+{
+    if (tree->cell[cell].size == 1 || tree->count + 4 > REF_MOST_CELLS) return false;
+    split(tree, cell);
+    balance(tree);
+    return true;
+}
+
 static void plant(const RefChart *chart, int across, RefQuadtree *tree)
 {
     double side[2], shorter;
@@ -203,14 +211,14 @@ SmCode ref_quadtree_of(const RefChart *chart, int across, long wanted, RefQuadtr
     return ref_quadtree_build(chart, across, found, tree, error);
 }
 
-/* A cell's node, and those on rims: in the middle of its sides there, and in the rectangle's
- * corners. */
-static void add_nodes(const RefQuadtree *tree, const RefCell *cell, double eta, RefNodes *nodes)
+/* Its own, and those on rims: in the middle of its sides there, and in the rectangle's corners. */
+void ref_quadtree_add_nodes(const RefQuadtree *tree, const RefCell *cell, double eta,
+                            RefNodes *nodes)
 {
     double middle[2], edge[2];
     ref_quadtree_cell(tree, cell, middle, edge);
-    for (int n = 0; n < 9; n++) {
-        int step[2] = {n % 3 - 1, n / 3 - 1};
+    for (int n = 0; n < REF_MOST_CELL_NODES; n++) {
+        int place = (n + 4) % REF_MOST_CELL_NODES, step[2] = {place % 3 - 1, place / 3 - 1};
         double *theta = nodes->position[nodes->count];
         bool rim = true;
         for (int d = 0; d < 2; d++) {
@@ -225,11 +233,11 @@ static void add_nodes(const RefQuadtree *tree, const RefCell *cell, double eta, 
 
 void ref_quadtree_nodes(const RefQuadtree *tree, double eta, RefNodes *nodes)
 {
-    size_t most = 9 * (size_t)tree->leaves;
+    size_t most = REF_MOST_CELL_NODES * (size_t)tree->leaves;
     *nodes = (RefNodes){.plane = true, .seams = tree->chart->seams, .seam = tree->chart->seam};
     nodes->position = sm_alloc(most, sizeof *nodes->position);
     nodes->reach = sm_alloc(most, sizeof *nodes->reach);
     for (long c = 0; c < tree->count; c++)
-        if (tree->cell[c].child < 0) add_nodes(tree, tree->cell + c, eta, nodes);
+        if (tree->cell[c].child < 0) ref_quadtree_add_nodes(tree, tree->cell + c, eta, nodes);
     ref_nodes_bin(nodes);
 }

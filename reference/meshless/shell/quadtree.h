@@ -45,11 +45,22 @@ int ref_quadtree_at(const RefQuadtree *tree, const double theta[2]);
 void ref_quadtree_cell(const RefQuadtree *tree, const RefCell *cell, double middle[2],
                        double edge[2]);
 
+/* Splits a terminal cell, and then others until the tree is balanced again. Four cells behind all
+ * others are its own. O(cells). False where it cannot be any smaller. */
+bool ref_quadtree_split(RefQuadtree *tree, long cell);
+
 /* A node in the middle of every terminal cell, its cover a square of `eta` times the cell's longer
  * edge; and, with the same cover, nodes on rims: in the middle of every cell's side that lies there
  * and in corners between two. Without these a plate that rows clamp is held
  * as if its edges lay farther in: of twenty by twenty cells with linear functions it keeps 71% of
  * its deflection, with them 94%. The caller frees; the chart has to live as long. */
 void ref_quadtree_nodes(const RefQuadtree *tree, double eta, RefNodes *nodes);
+
+/* Appends one terminal cell's nodes, REF_MOST_CELL_NODES at most, the one in the middle first, to
+ * arrays that have room for them. Bins stay as they are. */
+void ref_quadtree_add_nodes(const RefQuadtree *tree, const RefCell *cell, double eta,
+                            RefNodes *nodes);
+
+enum { REF_MOST_CELL_NODES = 9 };
 
 #endif

@@ -14,6 +14,12 @@ void ref_shell_free(RefShell *shell)
     *shell = (RefShell){.X = NULL};
 }
 
+double ref_shell_eta(const RefShellOptions *options)
+{
+    if (options->eta > 0) return options->eta;
+    return options->basis == REF_MLS_PLANE_LINEAR ? 4 : 6;
+}
+
 SmCode ref_shell_build(const RefChart *chart, const RefShellOptions *options, RefShell *shell,
                        SmError *error)
 {
@@ -24,8 +30,7 @@ SmCode ref_shell_build(const RefChart *chart, const RefShellOptions *options, Re
             ? ref_quadtree_of(&shell->chart, options->across, options->nodes, &shell->tree, error)
             : ref_quadtree_build(&shell->chart, options->across, INFINITY, &shell->tree, error);
     if (code != SM_OK) return code;
-    double eta = options->basis == REF_MLS_PLANE_LINEAR ? 4 : 6;
-    ref_quadtree_nodes(&shell->tree, options->eta > 0 ? options->eta : eta, &shell->nodes);
+    ref_quadtree_nodes(&shell->tree, ref_shell_eta(options), &shell->nodes);
     code = ref_samples_take(&shell->tree, &shell->nodes, options->basis, &samples, error);
     if (code == SM_OK)
         code = ref_middle_fit(&shell->chart, &samples, shell->nodes.count, &shell->X, error);
@@ -40,15 +45,7 @@ SmCode ref_shell_build(const RefChart *chart, const RefShellOptions *options, Re
 bool ref_shell_at(const RefShell *shell, const double theta[3], RefShape *shape, RefFrame *frame)
 {
     if (!ref_mls_at(&shell->nodes, shell->basis, theta, shape)) return false;
-    double(*part)[6] = sm_alloc((size_t)shape->count, sizeof *part);
-    for (int n = 0; n < shape->count; n++) {
-        part[n][0] = shape->value[n];
-        for (int d = 0; d < 2; d++) part[n][1 + d] = shape->gradient[n][d];
-        for (int m = 0; m < 3; m++) part[n][3 + m] = shape->second[n][m];
-    }
-    *frame = ref_middle_at((const double(*)[3])shell->X, shape->count, shape->node,
-                           (const double(*)[6])part);
-    free(part);
+    *frame = ref_middle_of((const double(*)[3])shell->X, shape);
     return true;
 }
 

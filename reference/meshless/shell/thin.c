@@ -33,6 +33,11 @@ static void factor_of(const double g[3], double nu, double G[3][3])
         }
 }
 
+bool ref_thin_is_stiff(const RefFrame *frame, double weight, double area)
+{
+    return frame->area * weight > LEAST_AREA * area;
+}
+
 void ref_thin_strains(const RefFrame *frame, const double part[6], double B[6][3])
 {
     static const double times[3] = {1, 1, 2};
@@ -94,7 +99,7 @@ static bool integrate(const double (*X)[3], const RefSamples *samples, long p, d
     double nu = material->poisson, G[3][3], B[6][3], area = samples->area[p];
     double membrane = area * material->young * t / (1 - nu * nu);
     double weight[2] = {sqrt(membrane), sqrt(membrane / 12) * t};
-    bool stiff = frame.area * samples->weight[p] > LEAST_AREA * area;
+    bool stiff = ref_thin_is_stiff(&frame, samples->weight[p], area);
     if (count > work->rows) {
         work->rows = 2 * count;
         work->row = sm_realloc(work->row, (size_t)work->rows, sizeof *work->row);

@@ -38,6 +38,9 @@ int ref_thin_element(const double (*X)[3], const RefSamples *samples, long cell,
                      const RefMaterial *material, RefThinWork *work, RefElement *element);
 void ref_element_free(RefElement *element);
 
+/* Whether functions leave the surface enough of its area at a sample for it to be stiff there. */
+bool ref_thin_is_stiff(const RefFrame *frame, double weight, double area);
+
 /* The strains of nodes' parameters: B, three rows of membrane (11, 22, twice 12), three of bending,
  * of a function with these parts. */
 void ref_thin_strains(const RefFrame *frame, const double part[6], double B[6][3]);

@@ -1,0 +1,490 @@
+#include "cracked.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../../lib/vector.h"
+#include "field_transfer.h"
+
+enum { SHARE_POINTS = 8 }; /* along a cover's edge */
+
+static bool terminal(const RefCracked *cracked, long c)
+{
+    return cracked->shell->tree.cell[c].child < 0;
+}
+
+static void forget_cell(RefCrackedCell *cell)
+{
+    ref_samples_free(&cell->samples);
+    ref_element_free(&cell->element);
+    cell->made = false;
+}
+
+void ref_cracked_free(RefCracked *cracked)
+{
+    for (long c = 0; cracked->cell && c < cracked->shell->tree.count; c++)
+        forget_cell(cracked->cell + c);
+    if (cracked->shell) cracked->shell->nodes.cut = (RefCut){NULL, NULL};
+    ref_element_rows_free(&cracked->rows);
+    ref_cracks_free(&cracked->cracks);
+    ref_nodes_free(&cracked->whole);
+    sm_free_all(cracked->cell, cracked->whole_X, cracked->whole_lift);
+    *cracked = (RefCracked){.shell = NULL};
+}
+
+static void *copy_of(const void *array, size_t count, size_t size)
+{
+    void *copy = sm_alloc(count, size);
+    memcpy(copy, array, count * size);
+    return copy;
+}
+
+/* Nodes with bins of their own. */
+static RefNodes copy_nodes(const RefNodes *nodes)
+{
+    RefNodes copy = *nodes;
+    copy.position = copy_of(nodes->position, (size_t)nodes->count, sizeof *nodes->position);
+    copy.reach = copy_of(nodes->reach, (size_t)nodes->count, sizeof *nodes->reach);
+    copy.owner = NULL;
+    copy.start = NULL;
+    copy.member = NULL;
+    ref_nodes_bin(&copy);
+    return copy;
+}
+
+/* The cells' nodes, in the order of ref_quadtree_nodes(). */
+static void number_nodes(RefCracked *cracked)
+{
+    const RefShell *shell = cracked->shell;
+    double theta[REF_MOST_CELL_NODES][3], reach[REF_MOST_CELL_NODES];
+    int next = 0;
+    for (long c = 0; c < shell->tree.count; c++) {
+        RefCrackedCell *cell = cracked->cell + c;
+        RefNodes own = {.position = theta, .reach = reach};
+        if (!terminal(cracked, c)) continue;
+        ref_quadtree_add_nodes(&shell->tree, shell->tree.cell + c, 1, &own);
+        cell->whole = (int)c;
+        cell->reach = shell->nodes.reach[next];
+        cell->nodes = (int)own.count;
+        for (int n = 0; n < cell->nodes; n++) cell->node[n] = next++;
+    }
+}
+
+/* How far parameters of the middle surface are from it: half a curvature times a cell's square. */
+static void find_lift(RefCracked *cracked)
+{
+    const RefNodes *whole = &cracked->whole;
+    RefShape shape = ref_shape_create(whole);
+    cracked->whole_lift = sm_alloc((size_t)whole->count, sizeof *cracked->whole_lift);
+    for (long n = 0; n < whole->count; n++) {
+        if (!ref_mls_at(whole, cracked->shell->basis, whole->position[n], &shape)) continue;
+        RefFrame frame = ref_middle_of((const double(*)[3])cracked->whole_X, &shape);
+        sm_subtract(cracked->whole_X[n], frame.x, cracked->whole_lift[n]);
+    }
+    ref_shape_free(&shape);
+}
+
+/* The samples of a cell; its areas are those of the whole shell. */
+static void take_samples(const RefCracked *cracked, long c, RefShape *shape, RefShape *whole,
+                         RefSamples *samples)
+{
+    const RefShell *shell = cracked->shell;
+    ref_samples_of(&shell->tree, c, &shell->nodes, shell->basis, shape, samples);
+    for (long p = 0; p < samples->count; p++) {
+        ref_mls_at(&cracked->whole, shell->basis, samples->theta[p], whole);
+        RefFrame frame = ref_middle_of((const double(*)[3])cracked->whole_X, whole);
+        samples->area[p] = frame.area * samples->weight[p];
+    }
+}
+
+static void integrate(RefCracked *cracked, RefCrackedCell *cell, RefThinWork *work)
+{
+    cell->soft = ref_thin_element((const double(*)[3])cracked->shell->X, &cell->samples, 0,
+                                  cracked->options.thickness, &cracked->options.material, work,
+                                  &cell->element);
+    cell->made = true;
+}
+
+/* Rows of touched nodes, and the matrices. */
+static void add_up(RefCracked *cracked, const unsigned char *touched)
+{
+    RefShell *shell = cracked->shell;
+    long cells = shell->tree.count;
+    const RefElement **element = sm_alloc((size_t)cells, sizeof(RefElement *));
+    for (long c = 0; c < cells; c++)
+        element[c] = cracked->cell[c].made ? &cracked->cell[c].element : NULL;
+    cracked->counts.rows_again =
+        ref_element_rows_sum(&cracked->rows, shell->nodes.count, touched, cells, element);
+    free(element);
+    ref_matrices_free(&shell->matrices);
+    ref_element_rows_matrices(&cracked->rows, cracked->options.material.density, &shell->matrices);
+}
+
+static void count_all(RefCracked *cracked)
+{
+    RefCrackedCounts *counts = &cracked->counts;
+    counts->cells = cracked->shell->tree.leaves;
+    counts->samples = counts->cells * REF_SAMPLES_PER_CELL;
+    counts->nodes = counts->rows = cracked->shell->nodes.count;
+    counts->blind = counts->soft = 0;
+    for (long c = 0; c < cracked->shell->tree.count; c++) {
+        const RefSamples *samples = &cracked->cell[c].samples;
+        if (terminal(cracked, c)) counts->soft += cracked->cell[c].soft;
+        for (long p = 0; p < samples->count; p++)
+            counts->blind += samples->start[p + 1] == samples->start[p];
+    }
+}
+
+void ref_cracked_remake(RefCracked *cracked)
+{
+    RefShell *shell = cracked->shell;
+    RefShape shape = ref_shape_create(&shell->nodes), whole = ref_shape_create(&cracked->whole);
+    RefThinWork work = ref_thin_work(shell->nodes.count);
+    unsigned char *touched = sm_alloc((size_t)shell->nodes.count, 1);
+    memset(touched, 1, (size_t)shell->nodes.count);
+    for (long c = 0; c < shell->tree.count; c++) {
+        forget_cell(cracked->cell + c);
+        if (!terminal(cracked, c)) continue;
+        take_samples(cracked, c, &shape, &whole, &cracked->cell[c].samples);
+        integrate(cracked, cracked->cell + c, &work);
+    }
+    add_up(cracked, touched);
+    count_all(cracked);
+    ref_thin_work_free(&work);
+    ref_shape_free(&shape);
+    ref_shape_free(&whole);
+    free(touched);
+}
+
+void ref_cracked_create(RefShell *shell, const RefShellOptions *options,
+                        const RefCrackedOptions *cracked_options, RefCracked *cracked)
+{
+    size_t nodes = (size_t)shell->nodes.count;
+    double margin = 0;
+    *cracked = (RefCracked){.shell = shell, .options = *options, .cracked = *cracked_options};
+    cracked->cell = sm_alloc((size_t)shell->tree.count, sizeof *cracked->cell);
+    cracked->cell_room = shell->tree.count;
+    for (size_t n = 0; n < nodes; n++) margin = fmax(margin, shell->nodes.reach[n]);
+    ref_cracks_create(&shell->chart, margin, &cracked->cracks);
+    cracked->whole = copy_nodes(&shell->nodes);
+    cracked->whole_X = copy_of(shell->X, nodes, sizeof *shell->X);
+    number_nodes(cracked);
+    find_lift(cracked);
+    shell->nodes.cut = (RefCut){ref_cracks_pass, &cracked->cracks};
+    ref_cracked_remake(cracked);
+}
+
+/* The share of its own weight that a cell's node gets from its cover, as far as this is on the
+ * surface. */
+static double share_of(const RefCracked *cracked, long c)
+{
+    const RefShell *shell = cracked->shell;
+    double middle[3] = {0}, edge[2], reach = cracked->cell[c].reach, got = 0, all = 0;
+    ref_quadtree_cell(&shell->tree, shell->tree.cell + c, middle, edge);
+    for (int n = 0; n < SHARE_POINTS * SHARE_POINTS; n++) {
+        const int which[2] = {n % SHARE_POINTS, n / SHARE_POINTS};
+        double theta[3] = {0}, entered[2], weight = 1, slope[2], part[6];
+        for (int d = 0; d < 2; d++) {
+            double s = (2 * which[d] + 1.0) / SHARE_POINTS - 1;
+            entered[d] = theta[d] = middle[d] + s * reach;
+            weight *= ref_mls_spline(s, slope);
+        }
+        if (!ref_chart_enter(&shell->chart, entered)) continue;
+        all += weight;
+        if (ref_cracks_pass(&cracked->cracks, middle, theta, reach, part)) got += weight * part[0];
+    }
+    return got / all;
+}
+
+/* Makes room for new cells, which are parts of others. */
+static void inherit(RefCracked *cracked, long from)
+{
+    const RefQuadtree *tree = &cracked->shell->tree;
+    if (tree->count > cracked->cell_room) {
+        cracked->cell =
+            sm_widen(cracked->cell, cracked->cell_room, 2 * tree->count, sizeof *cracked->cell, 0);
+        cracked->cell_room = 2 * tree->count;
+    }
+    for (long p = 0; p < tree->count; p++) {
+        const RefCrackedCell *parent = cracked->cell + p;
+        for (int k = 0; tree->cell[p].child >= from && k < 4; k++)
+            cracked->cell[tree->cell[p].child + k] =
+                (RefCrackedCell){.whole = parent->whole,
+                                 .splits = parent->splits + 1,
+                                 .reach = parent->reach / 2,
+                                 .from = parent->nodes ? (int)p : parent->from};
+    }
+}
+
+/* Splits cells whose node gets too little; what others get is no matter. Returns how many cells
+ * were terminal and are no more. */
+static long split_cells(RefCracked *cracked)
+{
+    RefQuadtree *tree = &cracked->shell->tree;
+    long before = tree->count;
+    for (long c = 0; c < tree->count; c++) {
+        double middle[2], edge[2];
+        long count = tree->count;
+        if (!terminal(cracked, c) || cracked->cell[c].splits >= cracked->cracked.most_splits)
+            continue;
+        ref_quadtree_cell(tree, tree->cell + c, middle, edge);
+        if (c < before && !ref_cracks_stir(&cracked->cracks, middle, middle)) continue;
+        if (share_of(cracked, c) >= cracked->cracked.least_share) continue;
+        if (ref_quadtree_split(tree, c)) inherit(cracked, count);
+    }
+    return (tree->count - before) / 4;
+}
+
+/* A new node in the plane: parameters of the middle surface as those of the whole shell are, above
+ * it by what is left of half the curvature times the square of its cell. */
+static void place_parameter(RefCracked *cracked, const RefCrackedCell *cell, int node,
+                            RefShape *whole)
+{
+    const RefShell *shell = cracked->shell;
+    const double *lift = cracked->whole_lift[cracked->cell[cell->whole].node[0]];
+    if (!ref_mls_at(&cracked->whole, shell->basis, shell->nodes.position[node], whole)) return;
+    RefFrame frame = ref_middle_of((const double(*)[3])cracked->whole_X, whole);
+    for (int d = 0; d < 3; d++) shell->X[node][d] = frame.x[d] + ldexp(lift[d], -2 * cell->splits);
+}
+
+/* Nodes of cells that were split make way for those of new cells, which are marked in `fresh`
+ * ([nodes], the caller's to free). */
+static unsigned char *move_nodes(RefCracked *cracked)
+{
+    RefShell *shell = cracked->shell;
+    RefQuadtree *tree = &shell->tree;
+    RefNodes *nodes = &shell->nodes;
+    long free_count = 0, old = nodes->count;
+    size_t most = (size_t)old + REF_MOST_CELL_NODES * (size_t)tree->leaves;
+    int *vacant = sm_alloc((size_t)old, sizeof *vacant);
+    unsigned char *fresh = sm_alloc(most, 1);
+    nodes->position = sm_realloc(nodes->position, most, sizeof *nodes->position);
+    nodes->reach = sm_realloc(nodes->reach, most, sizeof *nodes->reach);
+    shell->X = sm_realloc(shell->X, most, sizeof *shell->X);
+    for (long c = 0; c < tree->count; c++)
+        for (int n = 0; !terminal(cracked, c) && n < cracked->cell[c].nodes; n++)
+            vacant[free_count++] = cracked->cell[c].node[n];
+    for (long c = 0; c < tree->count; c++) {
+        RefCrackedCell *cell = cracked->cell + c;
+        double theta[REF_MOST_CELL_NODES][3] = {{0}}, reach[REF_MOST_CELL_NODES];
+        RefNodes own = {.position = theta, .reach = reach};
+        if (!terminal(cracked, c) || cell->nodes) continue;
+        ref_quadtree_add_nodes(tree, tree->cell + c, 1, &own);
+        cell->nodes = (int)own.count;
+        for (int n = 0; n < cell->nodes; n++) {
+            int node = free_count ? vacant[--free_count] : (int)nodes->count++;
+            memcpy(nodes->position[node], theta[n], sizeof theta[n]);
+            nodes->reach[node] = cell->reach;
+            cell->node[n] = node;
+            fresh[node] = 1;
+            cracked->counts.nodes_new++;
+        }
+    }
+    free(vacant);
+    ref_nodes_bin(nodes);
+    return fresh;
+}
+
+/* The functions and fields that a shell had. */
+typedef struct {
+    RefNodes nodes;
+    double (*X)[3];
+    double (**field)[3];
+    RefShape shape;
+    double (*part)[6]; /* of `shape` */
+} Before;
+
+static Before remember(const RefCracked *cracked, const RefCrackedFields *fields)
+{
+    const RefShell *shell = cracked->shell;
+    size_t nodes = (size_t)shell->nodes.count;
+    Before before = {.nodes = copy_nodes(&shell->nodes),
+                     .X = copy_of(shell->X, nodes, sizeof(double[3]))};
+    before.nodes.cut.pass = ref_cracks_passed;
+    before.shape = ref_shape_create(&before.nodes);
+    before.part = sm_alloc((size_t)before.nodes.most, sizeof *before.part);
+    before.field = sm_alloc((size_t)(fields ? fields->count : 0), sizeof *before.field);
+    for (int f = 0; fields && f < fields->count; f++)
+        before.field[f] = copy_of(fields->field[f], nodes, sizeof(double[3]));
+    return before;
+}
+
+static void forget(const RefCrackedFields *fields, Before *before)
+{
+    for (int f = 0; fields && f < fields->count; f++) free(before->field[f]);
+    ref_nodes_free(&before->nodes);
+    ref_shape_free(&before->shape);
+    sm_free_all(before->X, before->part, before->field);
+}
+
+/* A place among the functions that there were. */
+static RefFieldPlace place_before(const RefShell *shell, double edge, const double theta[3],
+                                  Before *before)
+{
+    RefShape *shape = &before->shape;
+    ref_samples_shape(&before->nodes, shell->basis, edge, theta, shape);
+    for (int n = 0; n < shape->count; n++) ref_samples_part(shape, n, before->part[n]);
+    return (RefFieldPlace){shape->count, shape->node, (const double(*)[6])before->part,
+                           (const double(*)[3])before->X, NULL};
+}
+
+/* A field's parameters at a new node: the field there, and a quarter a split of what the parameters
+ * of the cell that was split were above it. */
+static void place_field(const RefCracked *cracked, const RefCrackedCell *cell, int node,
+                        Before *before, const RefCrackedFields *fields)
+{
+    const RefShell *shell = cracked->shell;
+    const RefCrackedCell *from = cracked->cell + cell->from;
+    int parent = from->node[0];
+    const double *at[2] = {shell->nodes.position[node], before->nodes.position[parent]};
+    for (int f = 0; f < fields->count; f++) {
+        double *u = fields->field[f] + 3 * (long)node,
+               share = ldexp(1, -2 * (cell->splits - from->splits));
+        for (int d = 0; d < 3; d++) u[d] = share * before->field[f][parent][d];
+    }
+    for (int k = 0; k < 2; k++) {
+        RefFieldPlace place = place_before(shell, cell->reach, at[k], before);
+        double share = k ? -ldexp(1, -2 * (cell->splits - from->splits)) : 1;
+        for (int f = 0; f < fields->count; f++)
+            for (int n = 0; n < place.count; n++)
+                for (int d = 0; d < 3; d++)
+                    fields->field[f][3 * (long)node + d] +=
+                        share * place.part[n][0] * before->field[f][place.node[n]][d];
+    }
+}
+
+/* Parameters of new nodes. */
+static void fill_nodes(RefCracked *cracked, const unsigned char *fresh, Before *before,
+                       const RefCrackedFields *fields)
+{
+    RefShape whole = ref_shape_create(&cracked->whole);
+    for (long c = 0; c < cracked->shell->tree.count; c++) {
+        const RefCrackedCell *cell = cracked->cell + c;
+        for (int n = 0; terminal(cracked, c) && n < cell->nodes; n++) {
+            if (!fresh[cell->node[n]]) continue;
+            place_parameter(cracked, cell, cell->node[n], &whole);
+            if (fields) place_field(cracked, cell, cell->node[n], before, fields);
+        }
+    }
+    ref_shape_free(&whole);
+}
+
+/* Whether samples of a cell have other functions than before. */
+static bool is_stale(const RefCracked *cracked, const RefCrackedCell *cell,
+                     const unsigned char *fresh)
+{
+    const RefNodes *nodes = &cracked->shell->nodes;
+    for (int n = 0; n < cell->element.count; n++)
+        if (fresh[cell->element.node[n]]) return true;
+    for (long p = 0; p < cell->samples.count; p++) {
+        const double *x = cell->samples.theta[p];
+        int near;
+        const int *member = ref_nodes_near(nodes, x, &near);
+        for (int n = 0; n < near; n++) {
+            const double *at = nodes->position[member[n]], reach = nodes->reach[member[n]];
+            if (!(fabs(x[0] - at[0]) < reach && fabs(x[1] - at[1]) < reach)) continue;
+            if (fresh[nodes->owner ? nodes->owner[member[n]] : member[n]]) return true;
+            if (ref_cracks_changed(&cracked->cracks, x, at)) return true;
+        }
+    }
+    return false;
+}
+
+/* What is left of the fields at a cell's samples. */
+static void add_rest(const RefCracked *cracked, const RefCrackedCell *cell, const RefSamples *old,
+                     double edge, Before *before, const RefCrackedFields *fields)
+{
+    const RefSamples *samples = &cell->samples;
+    RefFieldNorm norm = {cracked->options.thickness, fields->mass_share, cracked->options.material};
+    for (long p = 0; p < samples->count; p++) {
+        long at = samples->start[p];
+        RefFieldPlace new = {(int)(samples->start[p + 1] - at), samples->node + at,
+                             (const double(*)[6])samples->part + at,
+                             (const double(*)[3])cracked->shell->X, NULL},
+                      was;
+        if (old->count) {
+            at = old->start[p];
+            was = (RefFieldPlace){(int)(old->start[p + 1] - at), old->node + at,
+                                  (const double(*)[6])old->part + at, (const double(*)[3])before->X,
+                                  NULL};
+        } else
+            was = place_before(cracked->shell, edge, samples->theta[p], before);
+        for (int f = 0; f < fields->count; f++) {
+            was.u = (const double(*)[3])before->field[f];
+            new.u = (const double(*)[3])fields->field[f];
+            ref_field_rest(&was, &new, samples->weight[p], samples->area[p], &norm,
+                           (double(*)[3])fields->rest[f]);
+        }
+    }
+}
+
+static void touch(const RefElement *element, unsigned char *touched)
+{
+    for (int n = 0; n < element->count; n++) touched[element->node[n]] = 1;
+}
+
+/* Takes again what is not what it was; marks nodes whose rows change. */
+static void remake_stale(RefCracked *cracked, const unsigned char *fresh, unsigned char *touched,
+                         Before *before, const RefCrackedFields *fields)
+{
+    RefShell *shell = cracked->shell;
+    RefShape shape = ref_shape_create(&shell->nodes), whole = ref_shape_create(&cracked->whole);
+    RefThinWork work = ref_thin_work(shell->nodes.count);
+    for (long c = 0; c < shell->tree.count; c++) {
+        RefCrackedCell *cell = cracked->cell + c;
+        RefSamples old = cell->samples;
+        bool was = cell->made;
+        if (was && terminal(cracked, c) && !is_stale(cracked, cell, fresh)) continue;
+        touch(&cell->element, touched);
+        ref_element_free(&cell->element);
+        cell->samples = (RefSamples){.count = 0};
+        cell->made = false;
+        if (terminal(cracked, c)) {
+            if (was) {
+                ref_samples_of(&shell->tree, c, &shell->nodes, shell->basis, &shape,
+                               &cell->samples);
+                memcpy(cell->samples.area, old.area, REF_SAMPLES_PER_CELL * sizeof *old.area);
+            } else
+                take_samples(cracked, c, &shape, &whole, &cell->samples);
+            integrate(cracked, cell, &work);
+            touch(&cell->element, touched);
+            if (fields) add_rest(cracked, cell, &old, cell->reach, before, fields);
+            cracked->counts.cells_again++;
+        } else
+            cell->nodes = 0;
+        ref_samples_free(&old);
+    }
+    ref_thin_work_free(&work);
+    ref_shape_free(&shape);
+    ref_shape_free(&whole);
+}
+
+bool ref_cracked_update(RefCracked *cracked, RefCrackedFields *fields)
+{
+    RefShell *shell = cracked->shell;
+    long nodes = shell->nodes.count;
+    Before before = remember(cracked, fields);
+    cracked->counts = (RefCrackedCounts){.split = split_cells(cracked)};
+    unsigned char *fresh = move_nodes(cracked);
+    size_t size = 3 * (size_t)shell->nodes.count;
+    unsigned char *touched = sm_alloc(size, 1);
+    for (int f = 0; fields && f < fields->count; f++) {
+        fields->field[f] = sm_widen(fields->field[f], 3 * nodes, (long)size, sizeof(double), 0);
+        fields->rest[f] = sm_realloc(fields->rest[f], size, sizeof(double));
+        memset(fields->rest[f], 0, size * sizeof(double));
+    }
+    fill_nodes(cracked, fresh, &before, fields);
+    remake_stale(cracked, fresh, touched, &before, fields);
+    add_up(cracked, touched);
+    count_all(cracked);
+    cracked->counts.samples_again = cracked->counts.cells_again * REF_SAMPLES_PER_CELL;
+    for (long n = 0; n < shell->nodes.count; n++) /* nodes that nothing sees are at rest */
+        for (int f = 0; fields && f < fields->count && !(cracked->rows.row[n].sum[0][0] > 0); f++)
+            memset(fields->field[f] + 3 * n, 0, sizeof(double[3]));
+    ref_cracks_settle(&cracked->cracks);
+    forget(fields, &before);
+    bool others = cracked->counts.nodes_new > 0;
+    sm_free_all(fresh, touched);
+    return others;
+}

@@ -1,0 +1,81 @@
+/* cracked.h - a thin shell with cracks (meshless section 4.2): what is near a crack is made again
+ * when the crack changes, and only that.
+ *
+ * Cells whose node gets too little from its own cover are split into four, with a node each, and
+ * others to keep the tree balanced. Then samples whose functions changed are taken again, cell by
+ * cell, and sums of pairs whose cells changed are added up again, in the order in which they would
+ * be if all was made anew: the matrices have the same bits. What is made depends on where cracks
+ * are and not on how they came there. */
+#ifndef REF_CRACKED_H
+#define REF_CRACKED_H
+
+#include "crack.h"
+#include "element_rows.h"
+#include "shell.h"
+
+typedef struct {
+    double least_share; /* of a node's weight, below which its cell is split */
+    int most_splits;    /* of a cell of the whole shell, one after the other */
+} RefCrackedOptions;
+
+/* A cell of the tree; terminal ones alone have all this. */
+typedef struct {
+    RefSamples samples; /* of this cell alone */
+    RefElement element;
+    int nodes, node[REF_MOST_CELL_NODES]; /* those that stand in it, in the middle first */
+    int whole;                            /* the terminal cell of the whole shell it is part of */
+    int splits;                           /* from there */
+    int from;                             /* a new cell: that of its ancestors which was terminal */
+    double reach;                         /* of its nodes */
+    int soft;                             /* samples without stiffness */
+    bool made;                            /* has samples and an element */
+} RefCrackedCell;
+
+/* How much there is, and what the last update made again. */
+typedef struct {
+    long cells, samples, nodes, rows; /* terminal cells, their samples, nodes, rows of pairs */
+    long cells_again, samples_again, nodes_new, rows_again;
+    long split;       /* cells */
+    long blind, soft; /* of all samples: those that see no node; those without stiffness */
+} RefCrackedCounts;
+
+typedef struct {
+    RefShell *shell; /* the caller's; its tree, nodes, X and matrices change */
+    RefShellOptions options;
+    RefCrackedOptions cracked;
+    RefCracks cracks;
+    RefCrackedCell *cell; /* [shell->tree.count] */
+    long cell_room;
+    RefElementRows rows;
+    RefCrackedCounts counts;
+    RefNodes whole;          /* nodes of the whole shell, and */
+    double (*whole_X)[3];    /* its middle surface */
+    double (*whole_lift)[3]; /* how far its parameters are from it, at nodes */
+} RefCracked;
+
+/* Takes a shell that was built with these options and has no cracks. `cracked` must not move in
+ * memory: the shell's nodes know its cracks. The caller frees it before the shell. */
+void ref_cracked_create(RefShell *shell, const RefShellOptions *options,
+                        const RefCrackedOptions *cracked_options, RefCracked *cracked);
+void ref_cracked_free(RefCracked *cracked);
+
+/* Fields of the shell, [3 nodes] each, that go on when its functions change. */
+typedef struct {
+    double mass_share; /* m, above 0 */
+    int count;
+    double **field; /* [count] the caller's, allocated with sm_alloc() */
+    double **rest;  /* [count] likewise, or NULL at first */
+} RefCrackedFields;
+
+/* After cracks were grown: makes again what that changes, and settles the cracks. A field's nodes
+ * keep their parameters, and new ones have what the field was there; what is left of the old field
+ * is written to `rest`, so that field + (K + m M)^-1 rest is its projection in the norm of K + m M:
+ * this is never longer than the field was, a rigid motion stays one, and the field's sums over the
+ * mass (momentum and its moment, of a velocity) stay what they were. `fields` may be NULL. Returns
+ * whether nodes are others than before. */
+bool ref_cracked_update(RefCracked *cracked, RefCrackedFields *fields);
+
+/* The slow twin: makes all again, of the tree and the nodes as they are. */
+void ref_cracked_remake(RefCracked *cracked);
+
+#endif

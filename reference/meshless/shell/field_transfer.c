@@ -1,0 +1,61 @@
+#include "field_transfer.h"
+
+#include <string.h>
+
+/* A field's value and strains at a place. */
+static void field_at(const RefFieldPlace *place, const RefFrame *frame, double value[3],
+                     double strain[6])
+{
+    double B[6][3];
+    memset(value, 0, sizeof(double[3]));
+    memset(strain, 0, sizeof(double[6]));
+    for (int n = 0; n < place->count; n++) {
+        const double *u = place->u[place->node[n]];
+        ref_thin_strains(frame, place->part[n], B);
+        for (int d = 0; d < 3; d++) value[d] += place->part[n][0] * u[d];
+        for (int i = 0; i < 6; i++)
+            for (int d = 0; d < 3; d++) strain[i] += B[i][d] * u[d];
+    }
+}
+
+static RefFrame frame_of(const RefFieldPlace *place)
+{
+    return ref_middle_at(place->X, place->count, place->node, place->part);
+}
+
+/* Forces that belong to strains, times the area. */
+static void stress_of(const RefFrame *frame, const double strain[6], double area,
+                      const RefFieldNorm *norm, double stress[6])
+{
+    double H[3][3], nu = norm->material.poisson, t = norm->thickness;
+    double membrane = area * norm->material.young * t / (1 - nu * nu);
+    ref_thin_law(frame->inverse, nu, H);
+    for (int i = 0; i < 6; i++) {
+        double sum = 0;
+        for (int j = 0; j < 3; j++) sum += H[i % 3][j] * strain[i / 3 * 3 + j];
+        stress[i] = (i < 3 ? membrane : membrane * t * t / 12) * sum;
+    }
+}
+
+void ref_field_rest(const RefFieldPlace *old, const RefFieldPlace *new, double weight, double area,
+                    const RefFieldNorm *norm, double (*rest)[3])
+{
+    double value[2][3], strain[2][6], stress[6] = {0}, B[6][3];
+    RefFrame frames[2] = {frame_of(old), frame_of(new)};
+    bool stiff = ref_thin_is_stiff(frames + 1, weight, area);
+    if (old->count == 0 || new->count == 0) return;
+    field_at(old, frames, value[0], strain[0]);
+    field_at(new, frames + 1, value[1], strain[1]);
+    if (!ref_thin_is_stiff(frames, weight, area)) memset(strain[0], 0, sizeof strain[0]);
+    for (int i = 0; i < 6; i++) strain[0][i] -= strain[1][i];
+    if (stiff) stress_of(frames + 1, strain[0], area, norm, stress);
+    double mass = norm->mass_share * norm->material.density * norm->thickness * area;
+    for (int n = 0; n < new->count; n++) {
+        double *sum = rest[new->node[n]];
+        if (stiff) ref_thin_strains(frames + 1, new->part[n], B);
+        for (int d = 0; d < 3; d++) {
+            sum[d] += mass * new->part[n][0] * (value[0][d] - value[1][d]);
+            for (int i = 0; stiff && i < 6; i++) sum[d] += B[i][d] * stress[i];
+        }
+    }
+}

@@ -1,0 +1,31 @@
+/* field_transfer.h - a shell's fields, such as displacements, from functions that it had to those
+ * that it has. */
+#ifndef REF_FIELD_TRANSFER_H
+#define REF_FIELD_TRANSFER_H
+
+#include "thin.h"
+
+/* The functions of one place: nodes and parts as RefSamples has them, and the parameters that the
+ * middle surface and a field have, [nodes][3]. */
+typedef struct {
+    int count;
+    const int *node;
+    const double (*part)[6];
+    const double (*X)[3];
+    const double (*u)[3];
+} RefFieldPlace;
+
+/* What a field is multiplied by when it is compared: the energy's law, and m times the mass. */
+typedef struct {
+    double thickness, mass_share;
+    RefMaterial material;
+} RefFieldNorm;
+
+/* Adds to `rest`, of the new nodes' parameters, the sum over one sample with this area of
+ *     B^T D (strains of the old field - of the new) + m rho t phi (old field - new),
+ * B, phi and D those of the new functions. Where the new ones leave the surface without an area,
+ * the second part alone. */
+void ref_field_rest(const RefFieldPlace *old, const RefFieldPlace *new, double weight, double area,
+                    const RefFieldNorm *norm, double (*rest)[3]);
+
+#endif
