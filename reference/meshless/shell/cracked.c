@@ -391,32 +391,77 @@ static bool is_stale(const RefCracked *cracked, const RefCrackedCell *cell,
     return false;
 }
 
+/* Sums over cells that were split: samples of the new ones are others, so that the fields' sums
+ * change with them. */
+typedef struct {
+    double (*lost)[3]; /* [fields] */
+    double area;
+    double *seen; /* [nodes] phi over the new samples' areas */
+} Balance;
+
+/* Functions of a sample. */
+static RefFieldPlace place_at(const RefSamples *samples, long p, double (*X)[3])
+{
+    long at = samples->start[p];
+    return (RefFieldPlace){(int)(samples->start[p + 1] - at), samples->node + at,
+                           (const double(*)[6])samples->part + at, (const double(*)[3])X, NULL};
+}
+
+static void balance_place(RefFieldPlace *place, double area, const Before *before, int fields,
+                          Balance *balance)
+{
+    for (int f = 0; f < fields; f++) {
+        double value[3];
+        place->u = (const double(*)[3])before->field[f];
+        ref_field_value(place, value);
+        for (int d = 0; d < 3; d++) balance->lost[f][d] += area * value[d];
+    }
+}
+
+static void balance_old(const RefSamples *old, const Before *before, int fields, Balance *balance)
+{
+    for (long p = 0; p < old->count; p++) {
+        RefFieldPlace place = place_at(old, p, before->X);
+        balance_place(&place, old->area[p], before, fields, balance);
+    }
+}
+
 /* What is left of the fields at a cell's samples. */
 static void add_rest(const RefCracked *cracked, const RefCrackedCell *cell, const RefSamples *old,
-                     double edge, Before *before, const RefCrackedFields *fields)
+                     Before *before, const RefCrackedFields *fields, Balance *balance)
 {
     const RefSamples *samples = &cell->samples;
     RefFieldNorm norm = {cracked->options.thickness, fields->mass_share, cracked->options.material};
     for (long p = 0; p < samples->count; p++) {
-        long at = samples->start[p];
-        RefFieldPlace new = {(int)(samples->start[p + 1] - at), samples->node + at,
-                             (const double(*)[6])samples->part + at,
-                             (const double(*)[3])cracked->shell->X, NULL},
-                      was;
-        if (old->count) {
-            at = old->start[p];
-            was = (RefFieldPlace){(int)(old->start[p + 1] - at), old->node + at,
-                                  (const double(*)[6])old->part + at, (const double(*)[3])before->X,
-                                  NULL};
-        } else
-            was = place_before(cracked->shell, edge, samples->theta[p], before);
+        double area = samples->area[p];
+        RefFieldPlace new = place_at(samples, p, cracked->shell->X);
+        RefFieldPlace was =
+            old->count ? place_at(old, p, before->X)
+                       : place_before(cracked->shell, cell->reach, samples->theta[p], before);
+        if (!old->count) {
+            balance_place(&was, -area, before, fields->count, balance);
+            balance->area += new.count ? area : 0;
+            for (int n = 0; n < new.count; n++) balance->seen[new.node[n]] += area * new.part[n][0];
+        }
         for (int f = 0; f < fields->count; f++) {
             was.u = (const double(*)[3])before->field[f];
             new.u = (const double(*)[3])fields->field[f];
-            ref_field_rest(&was, &new, samples->weight[p], samples->area[p], &norm,
+            ref_field_rest(&was, &new, samples->weight[p], area, &norm,
                            (double(*)[3])fields->rest[f]);
         }
     }
+}
+
+/* Spreads what sums have lost over the new cells. */
+static void settle_balance(const RefCracked *cracked, const RefCrackedFields *fields,
+                           const Balance *balance)
+{
+    double unit =
+        fields->mass_share * cracked->options.material.density * cracked->options.thickness;
+    for (int f = 0; balance->area > 0 && f < fields->count; f++)
+        for (long n = 0; n < 3 * cracked->shell->nodes.count; n++)
+            fields->rest[f][n] +=
+                unit * balance->seen[n / 3] * balance->lost[f][n % 3] / balance->area;
 }
 
 static void touch(const RefElement *element, unsigned char *touched)
@@ -431,6 +476,9 @@ static void remake_stale(RefCracked *cracked, const unsigned char *fresh, unsign
     RefShell *shell = cracked->shell;
     RefShape shape = ref_shape_create(&shell->nodes), whole = ref_shape_create(&cracked->whole);
     RefThinWork work = ref_thin_work(shell->nodes.count);
+    int count = fields ? fields->count : 0;
+    Balance balance = {.lost = sm_alloc((size_t)count, sizeof(double[3])),
+                       .seen = sm_alloc((size_t)shell->nodes.count, sizeof(double))};
     for (long c = 0; c < shell->tree.count; c++) {
         RefCrackedCell *cell = cracked->cell + c;
         RefSamples old = cell->samples;
@@ -449,12 +497,16 @@ static void remake_stale(RefCracked *cracked, const unsigned char *fresh, unsign
                 take_samples(cracked, c, &shape, &whole, &cell->samples);
             integrate(cracked, cell, &work);
             touch(&cell->element, touched);
-            if (fields) add_rest(cracked, cell, &old, cell->reach, before, fields);
+            if (fields) add_rest(cracked, cell, &old, before, fields, &balance);
             cracked->counts.cells_again++;
-        } else
+        } else {
             cell->nodes = 0;
+            balance_old(&old, before, count, &balance);
+        }
         ref_samples_free(&old);
     }
+    if (fields) settle_balance(cracked, fields, &balance);
+    sm_free_all(balance.lost, balance.seen);
     ref_thin_work_free(&work);
     ref_shape_free(&shape);
     ref_shape_free(&whole);
@@ -474,6 +526,7 @@ bool ref_cracked_update(RefCracked *cracked, RefCrackedFields *fields)
         fields->rest[f] = sm_realloc(fields->rest[f], size, sizeof(double));
         memset(fields->rest[f], 0, size * sizeof(double));
     }
+    memcpy(touched, fresh, (size_t)shell->nodes.count);
     fill_nodes(cracked, fresh, &before, fields);
     remake_stale(cracked, fresh, touched, &before, fields);
     add_up(cracked, touched);

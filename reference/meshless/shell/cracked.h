@@ -70,9 +70,9 @@ typedef struct {
 /* After cracks were grown: makes again what that changes, and settles the cracks. A field's nodes
  * keep their parameters, and new ones have what the field was there; what is left of the old field
  * is written to `rest`, so that field + (K + m M)^-1 rest is its projection in the norm of K + m M:
- * this is never longer than the field was, a rigid motion stays one, and the field's sums over the
- * mass (momentum and its moment, of a velocity) stay what they were. `fields` may be NULL. Returns
- * whether nodes are others than before. */
+ * this is hardly longer than the field was (samples of cells that were split are others), and the
+ * field's sum over the mass, of a velocity the momentum, stays what it was. `fields` may be NULL.
+ * Returns whether nodes are others than before. */
 bool ref_cracked_update(RefCracked *cracked, RefCrackedFields *fields);
 
 /* The slow twin: makes all again, of the tree and the nodes as they are. */

@@ -36,30 +36,30 @@ static Uses find_uses(long nodes, long count, const RefElement *const *element)
     return uses;
 }
 
-/* Appends nodes of which `number` is -1. */
-static void meet(const int *node, int count, int *number, RefElementRow *row)
-{
-    if (row->count + count > row->room) {
-        row->room = 2 * (row->count + count);
-        row->partner = sm_realloc(row->partner, (size_t)row->room, sizeof *row->partner);
-        row->sum = sm_realloc(row->sum, (size_t)row->room, sizeof *row->sum);
-    }
-    for (int b = 0; b < count; b++) {
-        if (number[node[b]] >= 0) continue;
-        number[node[b]] = 0;
-        row->partner[row->count++] = node[b];
-    }
-}
-
-/* The node's partners, rising; `number` is -1 of all before and their place afterwards. */
+/* The node's partners, rising; `number` is -1 of all before and their place afterwards. Nodes that
+ * no sample of a cell sees together are none. */
 static void find_partners(long n, const Uses *uses, const RefElement *const *element, int *number,
                           RefElementRow *row)
 {
-    row->count = 0;
-    meet((int[]){(int)n}, 1, number, row);
+    int most = 1;
+    for (long u = uses->start[n]; u < uses->start[n + 1]; u++)
+        most += element[uses->element[u]]->count;
+    if (most > row->room) {
+        row->partner = sm_realloc(row->partner, (size_t)most, sizeof *row->partner);
+        row->sum = sm_realloc(row->sum, (size_t)most, sizeof *row->sum);
+        row->room = most;
+    }
+    row->partner[0] = (int)n;
+    row->count = 1;
+    number[n] = 0;
     for (long u = uses->start[n]; u < uses->start[n + 1]; u++) {
         const RefElement *of = element[uses->element[u]];
-        meet(of->node + uses->place[u], of->count - uses->place[u], number, row);
+        long a = uses->place[u];
+        for (long b = a; b < of->count; b++) {
+            if (number[of->node[b]] >= 0 || of->sum[a * of->count + b][0] == 0) continue;
+            number[of->node[b]] = 0;
+            row->partner[row->count++] = of->node[b];
+        }
     }
     sm_sort_ints(row->partner, row->count);
     for (int b = 0; b < row->count; b++) number[row->partner[b]] = b;
@@ -74,8 +74,9 @@ static void sum_row(long n, const Uses *uses, const RefElement *const *element, 
         const RefElement *of = element[uses->element[u]];
         long a = uses->place[u];
         for (long b = a; b < of->count; b++) {
-            double *sum = row->sum[number[of->node[b]]];
-            for (int k = 0; k < 10; k++) sum[k] += of->sum[a * of->count + b][k];
+            int place = number[of->node[b]];
+            for (int k = 0; place >= 0 && k < 10; k++)
+                row->sum[place][k] += of->sum[a * of->count + b][k];
         }
     }
     for (int b = 0; b < row->count; b++) number[row->partner[b]] = -1;

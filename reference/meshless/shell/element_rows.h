@@ -5,7 +5,8 @@
 
 #include "thin.h"
 
-/* A node's sums with its partners J >= I, as RefElement has them. */
+/* A node's sums with its partners J >= I, as RefElement has them: nodes that some sample sees both.
+ */
 typedef struct {
     int count, room;
     int *partner; /* [count] rising; the node itself is the first */

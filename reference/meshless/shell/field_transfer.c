@@ -2,17 +2,20 @@
 
 #include <string.h>
 
-/* A field's value and strains at a place. */
-static void field_at(const RefFieldPlace *place, const RefFrame *frame, double value[3],
-                     double strain[6])
+void ref_field_value(const RefFieldPlace *place, double value[3])
+{
+    memset(value, 0, sizeof(double[3]));
+    for (int n = 0; n < place->count; n++)
+        for (int d = 0; d < 3; d++) value[d] += place->part[n][0] * place->u[place->node[n]][d];
+}
+
+static void strain_at(const RefFieldPlace *place, const RefFrame *frame, double strain[6])
 {
     double B[6][3];
-    memset(value, 0, sizeof(double[3]));
     memset(strain, 0, sizeof(double[6]));
     for (int n = 0; n < place->count; n++) {
         const double *u = place->u[place->node[n]];
         ref_thin_strains(frame, place->part[n], B);
-        for (int d = 0; d < 3; d++) value[d] += place->part[n][0] * u[d];
         for (int i = 0; i < 6; i++)
             for (int d = 0; d < 3; d++) strain[i] += B[i][d] * u[d];
     }
@@ -44,8 +47,10 @@ void ref_field_rest(const RefFieldPlace *old, const RefFieldPlace *new, double w
     RefFrame frames[2] = {frame_of(old), frame_of(new)};
     bool stiff = ref_thin_is_stiff(frames + 1, weight, area);
     if (old->count == 0 || new->count == 0) return;
-    field_at(old, frames, value[0], strain[0]);
-    field_at(new, frames + 1, value[1], strain[1]);
+    ref_field_value(old, value[0]);
+    ref_field_value(new, value[1]);
+    strain_at(old, frames, strain[0]);
+    strain_at(new, frames + 1, strain[1]);
     if (!ref_thin_is_stiff(frames, weight, area)) memset(strain[0], 0, sizeof strain[0]);
     for (int i = 0; i < 6; i++) strain[0][i] -= strain[1][i];
     if (stiff) stress_of(frames + 1, strain[0], area, norm, stress);

@@ -21,6 +21,9 @@ typedef struct {
     RefMaterial material;
 } RefFieldNorm;
 
+/* A field's value at a place. */
+void ref_field_value(const RefFieldPlace *place, double value[3]);
+
 /* Adds to `rest`, of the new nodes' parameters, the sum over one sample with this area of
  *     B^T D (strains of the old field - of the new) + m rho t phi (old field - new),
  * B, phi and D those of the new functions. Where the new ones leave the surface without an area,

@@ -1,5 +1,6 @@
 #include "samples.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,6 +8,7 @@
 #include "../body/covers.h"
 #include "../body/gauss_rule.h"
 
+static const double MOST_SLOPE = 6, MOST_SECOND = 50;
 enum { ORDER = 3, PARTS = 2, ALONG = ORDER * PARTS };
 
 void ref_samples_free(RefSamples *samples)
@@ -35,19 +37,38 @@ static void place(const RefQuadtree *tree, const RefCell *cell, RefSamples *samp
     }
 }
 
+/* Whether functions vary no faster than their cell can bear: where cracks leave a sample few nodes,
+ * at their covers' edges, they may, and would be stiffer than all else by orders of magnitude.
+ * Whole covers have slopes of 2 over the edge and second derivatives of 9 over its square at most.
+ */
+static bool tame(const RefShape *shape, double edge)
+{
+    double slope = 0, second = 0;
+    for (int n = 0; n < shape->count; n++) {
+        for (int d = 0; d < 2; d++) slope = fmax(slope, fabs(shape->gradient[n][d]));
+        for (int m = 0; m < 3; m++) second = fmax(second, fabs(shape->second[n][m]));
+    }
+    return slope * edge <= MOST_SLOPE && second * edge * edge <= MOST_SECOND;
+}
+
 int ref_samples_shape(const RefNodes *nodes, RefBasis basis, double edge, const double x[3],
                       RefShape *shape)
 {
-    static const RefBasis lower[] = {REF_MLS_PLANE_LINEAR, REF_MLS_PLANE_CONSTANT};
-    const double eye[3] = {x[0] + 1.3e-6 * edge, x[1] + 0.7e-6 * edge, 0};
-    if (ref_mls_at(nodes, basis, x, shape)) return basis;
-    if (!nodes->cut.pass) return 0;
-    for (int n = 0; n < 2; n++)
-        if (lower[n] < basis && ref_mls_at(nodes, lower[n], x, shape)) return lower[n];
-    if (ref_mls_seen_from(nodes, basis, x, eye, shape)) return basis;
-    for (int n = 0; n < 2; n++)
-        if (lower[n] < basis && ref_mls_seen_from(nodes, lower[n], x, eye, shape)) return lower[n];
-    return 0;
+    const RefBasis bases[] = {basis, REF_MLS_PLANE_LINEAR, REF_MLS_PLANE_CONSTANT};
+    const double beside[3] = {x[0] + 1.3e-6 * edge, x[1] + 0.7e-6 * edge, 0};
+    const double *eye[2] = {x, beside};
+    if (!nodes->cut.pass) return ref_mls_at(nodes, basis, x, shape) ? (int)basis : 0;
+    for (int e = 0; e < 2; e++) {
+        for (int n = basis == bases[1]; n < 3; n++)
+            if (ref_mls_seen_from(nodes, bases[n], x, eye[e], shape) && tame(shape, edge))
+                return (int)bases[n];
+        if (shape->count) break;
+    }
+    for (int n = 0; n < shape->count; n++) {
+        memset(shape->gradient[n], 0, sizeof shape->gradient[n]);
+        memset(shape->second[n], 0, sizeof shape->second[n]);
+    }
+    return shape->count ? REF_MLS_PLANE_CONSTANT : 0;
 }
 
 void ref_samples_part(const RefShape *shape, int n, double part[6])

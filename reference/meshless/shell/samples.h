@@ -31,8 +31,10 @@ void ref_samples_free(RefSamples *samples);
 void ref_samples_of(const RefQuadtree *tree, long cell, const RefNodes *nodes, RefBasis basis,
                     RefShape *shape, RefSamples *samples);
 
-/* The shape functions at a place of a cell whose edge is `edge`, with lower bases as above; at a
- * place on a crack as one beside it sees them. Returns the basis, or 0 where no node is seen. */
+/* The shape functions at a place of a cell whose edge is `edge`; between cracks of the first of a
+ * quadratic, linear and constant basis that is defined there and varies no faster than the cell can
+ * bear, or the last without derivatives; at a place on a crack as one beside it sees them. Returns
+ * the basis, or 0 where no node is seen. */
 int ref_samples_shape(const RefNodes *nodes, RefBasis basis, double edge, const double x[3],
                       RefShape *shape);
 
