@@ -113,8 +113,7 @@ static void add_pieces(RefCracks *cracks, int arm, const double end[2][2])
     for (int s = 0; s < cracks->chart->seams; s++) {
         const RefSeam *seam = cracks->chart->seam + s;
         double there[2][2];
-        for (int e = 0; e < 2; e++)
-            for (int d = 0; d < 2; d++) there[e][d] = end[e][d] + seam->shift[d];
+        for (int e = 0; e < 2; e++) ref_seam_cross(seam, end[e], there[e]);
         if (matters(cracks, (const double(*)[2])there))
             add_piece(cracks, arm, (const double(*)[2])there);
     }
@@ -173,6 +172,20 @@ static bool begins_at(const RefCrackPiece *piece, const double at[2])
     return false;
 }
 
+/* Moves a place into the rectangle; whether the way there is turned then is where another place
+ * beside it goes. */
+static bool enter(const RefChart *chart, double theta[2], bool *turned)
+{
+    double from[2] = {theta[0], theta[1]};
+    if (!ref_chart_enter(chart, theta)) return false;
+    for (int s = 0; s < chart->seams; s++) {
+        double there[2];
+        ref_seam_cross(chart->seam + s, from, there);
+        if (there[0] == theta[0] && there[1] == theta[1]) *turned = chart->seam[s].turned;
+    }
+    return true;
+}
+
 RefCrackFate ref_cracks_grow(RefCracks *cracks, int arm, const double to[2])
 {
     double end[2][2], way[2], share = 1;
@@ -196,12 +209,13 @@ RefCrackFate ref_cracks_grow(RefCracks *cracks, int arm, const double to[2])
     if (!(length > 0)) return fate;
     lengthen(cracks, arm, length);
     add_pieces(cracks, arm, (const double(*)[2])end);
+    bool turned = false;
     memcpy(entered, end[1], sizeof entered);
-    if (!ref_chart_enter(cracks->chart, entered) && fate == REF_CRACK_GOES_ON)
+    if (!enter(cracks->chart, entered, &turned) && fate == REF_CRACK_GOES_ON)
         fate = REF_CRACK_MEETS_RIM;
     RefCrackArm *of = cracks->arm + arm;
     memcpy(of->tip, entered, sizeof of->tip);
-    for (int d = 0; d < 2; d++) of->way[d] = way[d] / length_of(way);
+    for (int d = 0; d < 2; d++) of->way[d] = (turned ? -1 : 1) * way[d] / length_of(way);
     of->length += length;
     if (fate != REF_CRACK_GOES_ON) ref_cracks_end(cracks, arm);
     return fate;

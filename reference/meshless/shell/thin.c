@@ -5,8 +5,9 @@
 
 #include "../../../lib/vector.h"
 
-/* A surface that has less of its area by this share is none. */
-static const double LEAST_AREA = 1e-3;
+/* Functions that leave a surface less than this share of its area are none that say how it bends:
+ * its inverse metric would be too large. */
+static const double LEAST_AREA = 0.4;
 
 void ref_thin_law(const double g[3], double nu, double H[3][3])
 {

@@ -1,0 +1,203 @@
+#include "fracture.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../../lib/vector.h"
+
+/* Samples of a cell in the middles of its quarters. */
+static const int quarter[4] = {7, 10, 25, 28};
+/* A tip sees stresses up to this many cells away; a crack begins as many cells from others; arms
+ * branch when they are as long; and arms of a branch turn by this angle. */
+static const double TIP_CELLS = 1, START_CELLS = 3, BRANCH_CELLS = 2, BRANCH_ANGLE = 0.6;
+/* The cosine of the sharpest turn. */
+static const double SHARPEST = 0.5;
+
+/* The larger principal stress and the direction across it, from sigma and the metric: an eigenvalue
+ * of sigma^km g_ml. */
+static void find_principal(RefFaceStress *stress)
+{
+    const double *s = stress->sigma, *g = stress->metric;
+    double mixed[2][2] = {{s[0] * g[0] + s[2] * g[2], s[0] * g[2] + s[2] * g[1]},
+                          {s[2] * g[0] + s[1] * g[2], s[2] * g[2] + s[1] * g[1]}};
+    double half = (mixed[0][0] + mixed[1][1]) / 2, off = (mixed[0][0] - mixed[1][1]) / 2;
+    double root = sqrt(fmax(off * off + mixed[0][1] * mixed[1][0], 0));
+    double v[2] = {mixed[0][1], half + root - mixed[0][0]};
+    double w[2] = {half + root - mixed[1][1], mixed[1][0]};
+    if (hypot(w[0], w[1]) > hypot(v[0], v[1])) memcpy(v, w, sizeof v);
+    stress->principal = half + root;
+    stress->along[0] = -(g[2] * v[0] + g[1] * v[1]);
+    stress->along[1] = g[0] * v[0] + g[2] * v[1];
+    double length = hypot(stress->along[0], stress->along[1]);
+    for (int d = 0; d < 2; d++) stress->along[d] = length > 0 ? stress->along[d] / length : d == 0;
+}
+
+/* The stress at one sample; none where it has no stiffness. */
+static RefFaceStress stress_at(const RefCracked *cracked, const RefSamples *samples, long p,
+                               const double (*u)[3])
+{
+    const RefShellOptions *options = &cracked->options;
+    const int *node = samples->node + samples->start[p];
+    const double(*part)[6] = (const double(*)[6])(samples->part + samples->start[p]);
+    int count = (int)(samples->start[p + 1] - samples->start[p]);
+    double strain[6] = {0}, B[6][3], H[3][3], nu = options->material.poisson;
+    RefFrame frame = ref_middle_at((const double(*)[3])cracked->shell->X, count, node, part);
+    RefFaceStress face[2] = {{.theta = {samples->theta[p][0], samples->theta[p][1]}}};
+    if (!ref_thin_is_stiff(&frame, samples->weight[p], samples->area[p])) return face[0];
+    for (int n = 0; n < count; n++) {
+        ref_thin_strains(&frame, part[n], B);
+        for (int i = 0; i < 6; i++) strain[i] += sm_dot(B[i], u[node[n]]);
+    }
+    ref_thin_law(frame.inverse, nu, H);
+    face[0].metric[0] = sm_dot(frame.tangent[0], frame.tangent[0]);
+    face[0].metric[1] = sm_dot(frame.tangent[1], frame.tangent[1]);
+    face[0].metric[2] = sm_dot(frame.tangent[0], frame.tangent[1]);
+    face[1] = face[0];
+    for (int side = 0; side < 2; side++) {
+        double far = (side ? -0.5 : 0.5) * options->thickness;
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++)
+                face[side].sigma[i] += options->material.young / (1 - nu * nu) * H[i][j] *
+                                       (strain[j] + far * strain[3 + j]);
+        find_principal(face + side);
+    }
+    return face[face[1].principal > face[0].principal];
+}
+
+RefFaceStress *ref_fracture_stresses(const RefCracked *cracked, const double (*u)[3], long *count)
+{
+    RefFaceStress *stress = sm_alloc(4 * (size_t)cracked->shell->tree.leaves, sizeof *stress);
+    *count = 0;
+    for (long c = 0; c < cracked->shell->tree.count; c++)
+        for (int q = 0; cracked->cell[c].made && q < 4; q++)
+            stress[(*count)++] = stress_at(cracked, &cracked->cell[c].samples, quarter[q], u);
+    return stress;
+}
+
+/* The shorter edge of the terminal cell at a place. */
+static double edge_at(const RefCracked *cracked, const double at[2])
+{
+    const RefQuadtree *tree = &cracked->shell->tree;
+    double middle[2], edge[2];
+    ref_quadtree_cell(tree, tree->cell + ref_quadtree_at(tree, at), middle, edge);
+    return fmin(edge[0], edge[1]);
+}
+
+/* The mean of the stresses about a place, also behind seams, where tensors stay what they are. */
+static RefFaceStress mean_about(const RefCracked *cracked, const double at[2], double far,
+                                const RefFaceStress *stress, long count)
+{
+    const RefChart *chart = cracked->cracks.chart;
+    double place[REF_MOST_SEAMS + 1][2], sum = 0;
+    RefFaceStress mean = {.theta = {at[0], at[1]}};
+    memcpy(place[0], at, sizeof place[0]);
+    for (int s = 0; s < chart->seams; s++) ref_seam_cross(chart->seam + s, at, place[s + 1]);
+    for (int s = 0; s <= chart->seams; s++)
+        for (long n = 0; n < count; n++) {
+            double way[2] = {stress[n].theta[0] - place[s][0], stress[n].theta[1] - place[s][1]};
+            double weight = 1 - (way[0] * way[0] + way[1] * way[1]) / (far * far);
+            if (!(weight > 0)) continue;
+            sum += weight;
+            for (int i = 0; i < 3; i++) {
+                mean.sigma[i] += weight * stress[n].sigma[i];
+                mean.metric[i] += weight * stress[n].metric[i];
+            }
+        }
+    if (!(sum > 0)) return mean;
+    for (int i = 0; i < 3; i++) {
+        mean.sigma[i] /= sum;
+        mean.metric[i] /= sum;
+    }
+    find_principal(&mean);
+    return mean;
+}
+
+/* Grows an arm by half a cell that is turned by an angle. */
+static int advance(RefCracked *cracked, int arm, const double way[2], double angle)
+{
+    const double *tip = cracked->cracks.arm[arm].tip;
+    double step = 0.5 * edge_at(cracked, tip);
+    double to[2] = {tip[0] + step * (cos(angle) * way[0] - sin(angle) * way[1]),
+                    tip[1] + step * (sin(angle) * way[0] + cos(angle) * way[1])};
+    ref_cracks_grow(&cracked->cracks, arm, to);
+    return 1;
+}
+
+/* The way a tip goes: `along`, or as close to it as a turn may be. */
+static void steer(const double way[2], const double along[2], double to[2])
+{
+    double ahead = way[0] * along[0] + way[1] * along[1], sign = ahead < 0 ? -1 : 1;
+    double side = sign * (way[0] * along[1] - way[1] * along[0]);
+    memcpy(to, along, 2 * sizeof *to);
+    if (fabs(ahead) < SHARPEST) {
+        double across = copysign(sqrt(1 - SHARPEST * SHARPEST), side);
+        to[0] = SHARPEST * way[0] - across * way[1];
+        to[1] = SHARPEST * way[1] + across * way[0];
+        return;
+    }
+    for (int d = 0; d < 2; d++) to[d] *= sign;
+}
+
+static int grow_tips(RefCracked *cracked, const RefFractureOptions *options,
+                     const RefFaceStress *stress, long count)
+{
+    RefCracks *cracks = &cracked->cracks;
+    int made = 0;
+    for (int a = 0, arms = (int)cracks->arms; a < arms; a++) {
+        const RefCrackArm arm = cracks->arm[a];
+        double edge = edge_at(cracked, arm.tip), way[2];
+        if (!arm.open || arm.last < 0) continue;
+        RefFaceStress mean = mean_about(cracked, arm.tip, TIP_CELLS * edge, stress, count);
+        if (!(mean.principal > options->strength)) continue;
+        steer(arm.way, mean.along, way);
+        bool branches = options->branching > 0 &&
+                        mean.principal > options->branching * options->strength &&
+                        arm.length > BRANCH_CELLS * edge;
+        if (branches) {
+            int branch = ref_cracks_start(cracks, arm.tip, a);
+            made += advance(cracked, branch, way, -BRANCH_ANGLE);
+        }
+        made += advance(cracked, a, way, branches ? BRANCH_ANGLE : 0);
+    }
+    return made;
+}
+
+static int by_principal(const void *a, const void *b)
+{
+    const RefFaceStress *p = a, *q = b;
+    if (p->principal != q->principal) return p->principal > q->principal ? -1 : 1;
+    if (p->theta[0] != q->theta[0]) return p->theta[0] < q->theta[0] ? -1 : 1;
+    return (p->theta[1] > q->theta[1]) - (p->theta[1] < q->theta[1]);
+}
+
+/* Of the stresses, which are sorted by it. */
+static int start_cracks(RefCracked *cracked, const RefFractureOptions *options,
+                        RefFaceStress *stress, long count)
+{
+    RefCracks *cracks = &cracked->cracks;
+    int starts = 0;
+    qsort(stress, (size_t)count, sizeof *stress, by_principal);
+    for (long n = 0; n < count && starts < options->most_starts; n++) {
+        const RefFaceStress *at = stress + n;
+        if (!(at->principal > options->strength)) break;
+        double far = START_CELLS * edge_at(cracked, at->theta);
+        if (ref_cracks_distance(cracks, at->theta, -1) < fmin(far, cracks->margin)) continue;
+        for (int side = -1; side <= 1; side += 2) {
+            double way[2] = {side * at->along[0], side * at->along[1]};
+            advance(cracked, ref_cracks_start(cracks, at->theta, -1), way, 0);
+        }
+        starts++;
+    }
+    return 2 * starts;
+}
+
+int ref_fracture_grow(RefCracked *cracked, const RefFractureOptions *options, const double (*u)[3])
+{
+    long count;
+    RefFaceStress *stress = ref_fracture_stresses(cracked, u, &count);
+    int made = grow_tips(cracked, options, stress, count);
+    made += start_cracks(cracked, options, stress, count);
+    free(stress);
+    return made;
+}
