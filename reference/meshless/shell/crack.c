@@ -172,6 +172,23 @@ static bool begins_at(const RefCrackPiece *piece, const double at[2])
     return false;
 }
 
+/* Whether the way from a tip meets another crack, and the first such share of it. */
+static bool first_meeting(const RefCracks *cracks, const double tip[2], const double to[2],
+                          double *share)
+{
+    int count;
+    bool any = false;
+    const int *member = near(cracks, tip, &count);
+    for (int n = 0; n < count; n++) {
+        const RefCrackPiece *piece = cracks->piece + member[n];
+        double there;
+        if (begins_at(piece, tip) || !meets(piece, tip, to, &there) || there >= *share) continue;
+        *share = there;
+        any = true;
+    }
+    return any;
+}
+
 /* Moves a place into the rectangle; whether the way there is turned then is where another place
  * beside it goes. */
 static bool enter(const RefChart *chart, double theta[2], bool *turned)
@@ -190,19 +207,10 @@ RefCrackFate ref_cracks_grow(RefCracks *cracks, int arm, const double to[2])
 {
     double end[2][2], way[2], share = 1;
     RefCrackFate fate = REF_CRACK_GOES_ON;
-    int count;
     memcpy(end[0], cracks->arm[arm].tip, sizeof end[0]);
     memcpy(end[1], to, sizeof end[1]);
     way_from(end[0], end[1], way);
-    const int *member = near(cracks, end[0], &count);
-    for (int n = 0; n < count; n++) {
-        const RefCrackPiece *piece = cracks->piece + member[n];
-        double there;
-        if (begins_at(piece, end[0]) || !meets(piece, end[0], to, &there)) continue;
-        if (there >= share) continue;
-        share = there;
-        fate = REF_CRACK_MEETS_CRACK;
-    }
+    if (first_meeting(cracks, end[0], to, &share)) fate = REF_CRACK_MEETS_CRACK;
     if (fate == REF_CRACK_MEETS_CRACK)
         for (int d = 0; d < 2; d++) end[1][d] = end[0][d] + (share + OVERSHOOT) * way[d];
     double length = length_of(way) * fmin(share, 1), entered[2];
@@ -326,6 +334,14 @@ bool ref_cracks_stir(const RefCracks *cracks, const double low[2], const double 
                 if (cracks->piece[cracks->near.item[e]].changed == cracks->now) return true;
         }
     return false;
+}
+
+bool ref_cracks_end_ahead(const RefCracks *cracks, int arm, double far)
+{
+    const RefCrackArm *of = cracks->arm + arm;
+    double to[2] = {of->tip[0] + far * of->way[0], of->tip[1] + far * of->way[1]}, share = 1;
+    if (first_meeting(cracks, of->tip, to, &share)) return true;
+    return !ref_chart_enter(cracks->chart, to);
 }
 
 void ref_cracks_settle(RefCracks *cracks)

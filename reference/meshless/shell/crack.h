@@ -59,6 +59,9 @@ typedef enum { REF_CRACK_GOES_ON, REF_CRACK_MEETS_RIM, REF_CRACK_MEETS_CRACK } R
  * another crack or a rim, it stops, and the arm is ended. O(pieces near). */
 RefCrackFate ref_cracks_grow(RefCracks *cracks, int arm, const double to[2]);
 
+/* Whether an arm would meet another crack or a rim if it went on straight for `far`. */
+bool ref_cracks_end_ahead(const RefCracks *cracks, int arm, double far);
+
 /* Ends an arm: nothing gets across any more near where its tip was. */
 void ref_cracks_end(RefCracks *cracks, int arm);
 

@@ -84,20 +84,22 @@ static double edge_at(const RefCracked *cracked, const double at[2])
     return fmin(edge[0], edge[1]);
 }
 
-/* The mean of the stresses about a place, also behind seams, where tensors stay what they are. */
-static RefFaceStress mean_about(const RefCracked *cracked, const double at[2], double far,
-                                const RefFaceStress *stress, long count)
+/* The mean of the stresses before a tip, also behind seams, where tensors stay what they are. */
+static RefFaceStress mean_before(const RefCracked *cracked, const RefCrackArm *arm, double far,
+                                 const RefFaceStress *stress, long count)
 {
     const RefChart *chart = cracked->cracks.chart;
     double place[REF_MOST_SEAMS + 1][2], sum = 0;
-    RefFaceStress mean = {.theta = {at[0], at[1]}};
-    memcpy(place[0], at, sizeof place[0]);
-    for (int s = 0; s < chart->seams; s++) ref_seam_cross(chart->seam + s, at, place[s + 1]);
+    RefFaceStress mean = {.theta = {arm->tip[0], arm->tip[1]}};
+    memcpy(place[0], arm->tip, sizeof place[0]);
+    for (int s = 0; s < chart->seams; s++) ref_seam_cross(chart->seam + s, arm->tip, place[s + 1]);
     for (int s = 0; s <= chart->seams; s++)
         for (long n = 0; n < count; n++) {
             double way[2] = {stress[n].theta[0] - place[s][0], stress[n].theta[1] - place[s][1]};
             double weight = 1 - (way[0] * way[0] + way[1] * way[1]) / (far * far);
-            if (!(weight > 0)) continue;
+            double ahead = way[0] * arm->way[0] + way[1] * arm->way[1];
+            if (!(weight > 0) || (s > 0 && chart->seam[s - 1].turned ? ahead > 0 : ahead < 0))
+                continue;
             sum += weight;
             for (int i = 0; i < 3; i++) {
                 mean.sigma[i] += weight * stress[n].sigma[i];
@@ -148,7 +150,11 @@ static int grow_tips(RefCracked *cracked, const RefFractureOptions *options,
         const RefCrackArm arm = cracks->arm[a];
         double edge = edge_at(cracked, arm.tip), way[2];
         if (!arm.open || arm.last < 0) continue;
-        RefFaceStress mean = mean_about(cracked, arm.tip, TIP_CELLS * edge, stress, count);
+        RefFaceStress mean = mean_before(cracked, &arm, TIP_CELLS * edge, stress, count);
+        if (ref_cracks_end_ahead(cracks, a, edge)) {
+            made += advance(cracked, a, arm.way, 0);
+            continue;
+        }
         if (!(mean.principal > options->strength)) continue;
         steer(arm.way, mean.along, way);
         bool branches = options->branching > 0 &&

@@ -5,7 +5,8 @@
  * both faces is above the strength, a crack begins across its direction, through the thickness,
  * half a cell to either side, unless another one is near. A tip goes on by half a cell where the
  * stress about it is above the strength, across its direction but not by a sharp turn, and in two
- * where it is above the strength by a factor. */
+ * where it is above the strength by a factor. What is less than a cell wide is no ligament: a tip
+ * goes on to a rim or another crack that is no farther ahead. */
 #ifndef REF_FRACTURE_H
 #define REF_FRACTURE_H
 

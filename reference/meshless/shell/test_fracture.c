@@ -115,7 +115,7 @@ TEST(a_notched_strip_breaks_across)
 {
     needs_solver();
     Plate strip;
-    RefFractureOptions options = {.strength = 1.2 / 0.05};
+    RefFractureOptions options = {.strength = 1.1 / 0.05};
     plate_of(3, 1, 8, &strip);
     RefCracks *cracks = &strip.cracked.cracks;
     int arm = ref_cracks_start(cracks, (double[]){1.53, -0.01}, -1);
