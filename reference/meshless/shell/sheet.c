@@ -45,6 +45,17 @@ static void weigh(RefSheet *sheet)
     free(mass);
 }
 
+/* Makes room for the nodes' forces, and the weight. */
+static void make_forces(RefSheet *sheet)
+{
+    size_t nodes = (size_t)sheet->shell.nodes.count;
+    sm_free_all(sheet->weight, sheet->force, sheet->impulse);
+    sheet->weight = sm_alloc(nodes, sizeof *sheet->weight);
+    sheet->force = sm_alloc(nodes, sizeof *sheet->force);
+    sheet->impulse = sm_alloc(nodes, sizeof *sheet->impulse);
+    weigh(sheet);
+}
+
 SmCode ref_sheet_create(const RefChart *chart, const RefSheetOptions *options, RefSheet *sheet,
                         SmError *error)
 {
@@ -58,11 +69,7 @@ SmCode ref_sheet_create(const RefChart *chart, const RefSheetOptions *options, R
         ref_sheet_free(sheet);
         return code;
     }
-    size_t nodes = (size_t)sheet->shell.nodes.count;
-    sheet->weight = sm_alloc(nodes, sizeof *sheet->weight);
-    sheet->force = sm_alloc(nodes, sizeof *sheet->force);
-    sheet->impulse = sm_alloc(nodes, sizeof *sheet->impulse);
-    weigh(sheet);
+    make_forces(sheet);
     ref_warp_pull(&sheet->warp, CONST(sheet->weight));
     ref_sheet_pose(sheet);
     return SM_OK;
@@ -213,20 +220,17 @@ static void set_targets(RefSheet *sheet)
 }
 
 /* Where what is held is at present becomes where it is held. The constant that u may be more by
- * makes u what moves at the first hold, or of a free body on average. */
+ * makes u what moves at the first hold, or of a free piece on average. */
 static void start_holds(RefSheet *sheet)
 {
     double(*u)[3] = (double(*)[3])sheet->steps.u, shift[3] = {0};
     const RefWarp *warp = &sheet->warp;
-    for (int d = 0; d < 3; d++) {
-        for (long n = 0; !sheet->holds && n < warp->nodes; n++)
-            shift[d] += warp->mass[n] * (warp->moved[n][d] - u[n][d]);
-        if (sheet->holds)
-            shift[d] =
-                row_of(&warp->rows, 0, CONST(warp->moved), d) - row_of(&warp->rows, 0, CONST(u), d);
-    }
+    ref_warp_anchor(&sheet->warp, u);
+    for (int d = 0; d < 3 && sheet->holds; d++)
+        shift[d] =
+            row_of(&warp->rows, 0, CONST(warp->moved), d) - row_of(&warp->rows, 0, CONST(u), d);
     for (long n = 0; n < warp->nodes; n++)
-        for (int d = 0; d < 3; d++) u[n][d] += shift[d];
+        for (int d = 0; d < 3 && warp->held[warp->piece[n]]; d++) u[n][d] += shift[d];
     for (int k = 0; k < sheet->holds; k++) {
         RefSheetHold *hold = sheet->hold + k;
         double R[9];
@@ -288,6 +292,39 @@ SmCode ref_sheet_hold(RefSheet *sheet, int grips, const RefSheetGrip *grip, SmEr
     }
     ref_rows_free(&rows);
     return code;
+}
+
+SmCode ref_sheet_renew(RefSheet *sheet, const double *u, const double *v, const double *moved,
+                       SmError *error)
+{
+    size_t size = 3 * (size_t)sheet->shell.nodes.count * sizeof(double);
+    RefWarp warp;
+    RefSteps steps;
+    SmCode code = ref_warp_create(&sheet->shell, &warp, error);
+    if (code != SM_OK) return code;
+    code = ref_steps_create(&sheet->shell.matrices, &sheet->options.damping, sheet->options.h, NULL,
+                            &steps, error);
+    if (code != SM_OK) {
+        ref_warp_free(&warp);
+        return code;
+    }
+    release(sheet);
+    ref_warp_free(&sheet->warp);
+    ref_steps_free(&sheet->steps);
+    sheet->warp = warp;
+    sheet->steps = steps;
+    memcpy(sheet->warp.moved, moved, size);
+    memcpy(sheet->steps.u, u, size);
+    memcpy(sheet->steps.v, v, size);
+    make_forces(sheet);
+    return SM_OK;
+}
+
+void ref_sheet_settle(RefSheet *sheet)
+{
+    start_holds(sheet);
+    ref_warp_pull(&sheet->warp, CONST(sheet->weight));
+    ref_sheet_pose(sheet);
 }
 
 void ref_sheet_aim(RefSheet *sheet, int k, const double pose[3][4])

@@ -44,7 +44,10 @@ SmCode ref_shell_build(const RefChart *chart, const RefShellOptions *options, Re
 
 bool ref_shell_at(const RefShell *shell, const double theta[3], RefShape *shape, RefFrame *frame)
 {
-    if (!ref_mls_at(&shell->nodes, shell->basis, theta, shape)) return false;
+    double middle[2], edge[2];
+    const RefCell *cell = shell->tree.cell + ref_quadtree_at(&shell->tree, theta);
+    ref_quadtree_cell(&shell->tree, cell, middle, edge);
+    if (!ref_samples_shape(&shell->nodes, shell->basis, edge[0], theta, shape)) return false;
     *frame = ref_middle_of((const double(*)[3])shell->X, shape);
     return true;
 }

@@ -36,8 +36,8 @@ SmCode ref_shell_build(const RefChart *chart, const RefShellOptions *options, Re
                        SmError *error);
 void ref_shell_free(RefShell *shell);
 
-/* The shape functions and the middle surface at a point of the rectangle; false where functions are
- * not defined. */
+/* The shape functions and the middle surface at a point of the rectangle, between cracks as samples
+ * have them; false where functions are not defined. */
 bool ref_shell_at(const RefShell *shell, const double theta[3], RefShape *shape, RefFrame *frame);
 
 /* Appends a row: how far the normal leans along `direction` (of unit length) where functions and

@@ -17,6 +17,11 @@ static double share_of_K(const RefDamping *damping, double h)
     return h * damping->stiffness_damping + h * h;
 }
 
+double ref_steps_mass_share(const RefDamping *damping, double h)
+{
+    return (1 + h * damping->mass_damping) / share_of_K(damping, h);
+}
+
 SmCode ref_steps_create(const RefMatrices *matrices, const RefDamping *damping, double h,
                         const RefRows *rows, RefSteps *steps, SmError *error)
 {
@@ -26,8 +31,8 @@ SmCode ref_steps_create(const RefMatrices *matrices, const RefDamping *damping, 
         return sm_fail(error, SM_USAGE, "a step of %g s; give one above 0", h);
     if (!(a >= 0 && b >= 0))
         return sm_fail(error, SM_USAGE, "dampings of %g 1/s and %g s; give none below 0", a, b);
-    SmCode code = ref_solver_create(matrices, -(1 + h * a) / share_of_K(damping, h), rows,
-                                    &steps->solver, error);
+    SmCode code =
+        ref_solver_create(matrices, -ref_steps_mass_share(damping, h), rows, &steps->solver, error);
     if (code != SM_OK) return code;
     double **vector[] = {&steps->u, &steps->v, &steps->force, &steps->right, &steps->other};
     for (int n = 0; n < 5; n++)

@@ -25,6 +25,9 @@ SmCode ref_steps_create(const RefMatrices *matrices, const RefDamping *damping, 
                         const RefRows *rows, RefSteps *steps, SmError *error);
 void ref_steps_free(RefSteps *steps);
 
+/* m of the matrix K + m M that steps are solved with. */
+double ref_steps_mass_share(const RefDamping *damping, double h);
+
 /* (M + h C + h^2 K) v = M v' + h (F - K u'), u = u' + h v, v' and u' from the step before. Solved
  * for v + u' / (b + h), of which the right side needs no K: 1 / h (M (v' + (1 + h a) / (b + h) u')
  * + h F). O(entries of the factors). */

@@ -8,6 +8,10 @@
 #include "../../../lib/vector.h"
 #include "../motion/rotation.h"
 
+/* A place that functions leave less of its area by this share is none. */
+static const double LEAST_AREA = 0.4;
+/* What holds the mean of a piece of a cracked shell, beside the Laplacian. */
+static const double SOFT = 1e-8;
 enum { PLACES = REF_WARP_PLACES, LANES = REF_FRAME_SLOPES };
 
 static void release(RefWarp *warp)
@@ -28,7 +32,7 @@ void ref_warp_free(RefWarp *warp)
     sm_free_all(warp->turn, warp->tug, warp->sum, warp->start, warp->node, warp->slope, warp->place,
                 warp->near, warp->other, warp->lean, warp->X, warp->rest_normal, warp->mass,
                 warp->moved, warp->turned, warp->pulled, warp->right, warp->answer, warp->drawn,
-                warp->column[0], warp->column[1]);
+                warp->column[0], warp->column[1], warp->piece, warp->held, warp->all);
     *warp = (RefWarp){.nodes = 0};
 }
 
@@ -73,6 +77,13 @@ static void add_slopes(const RefShape *shape, int place, int *number, long *room
     warp->start[warp->cells + 1] = end;
 }
 
+/* Whether functions leave the surface its area at a place: between cracks they may not. */
+static bool bears(const RefShell *shell, const double theta[3], const RefFrame *frame)
+{
+    double L = shell->chart.factor(shell->chart.data, theta);
+    return !shell->nodes.cut.pass || frame->area > LEAST_AREA * L * L;
+}
+
 static void make_cells(const RefShell *shell, RefWarp *warp)
 {
     RefShape shape = ref_shape_create(&shell->nodes);
@@ -92,7 +103,8 @@ static void make_cells(const RefShell *shell, RefWarp *warp)
         for (int p = 0; p < PLACES; p++) {
             RefFrame frame;
             place_at(middle, edge, p, theta);
-            ref_shell_at(shell, theta, &shape, &frame);
+            if (!ref_shell_at(shell, theta, &shape, &frame) || !bears(shell, theta, &frame))
+                continue;
             note_place(&frame, edge[0] * edge[1] / PLACES, warp->place + PLACES * warp->cells + p);
             add_slopes(&shape, p, number, room, warp);
         }
@@ -118,7 +130,7 @@ static void make_normals(const RefShell *shell, RefWarp *warp)
             int cell = ref_quadtree_at(&shell->tree, theta);
             ref_quadtree_cell(&shell->tree, shell->tree.cell + cell, middle, edge);
             place_at(middle, edge, (theta[0] > middle[0]) + 2 * (theta[1] > middle[1]), theta);
-            ref_shell_at(shell, theta, &shape, &frame);
+            if (!ref_shell_at(shell, theta, &shape, &frame)) frame = (RefFrame){.area = 0};
         }
         long end = warp->near[n] + shape.count;
         sm_make_room(warp->other, room, end);
@@ -167,14 +179,36 @@ static void make_laplacian(RefWarp *warp)
     free(sorted);
 }
 
+/* What hangs together, by the mass of pairs, and the nodes' shares of it. */
 static void share_mass(const RefShell *shell, RefWarp *warp)
 {
-    double *one = sm_alloc((size_t)warp->nodes, sizeof *one), sum = 0;
+    const RefSparse *M = &shell->matrices.mass;
+    SmPieces pieces;
+    sm_pieces_init(warp->nodes, &pieces);
+    for (int c = 0; c < M->columns; c++)
+        for (int e = M->start[c]; e < M->start[c + 1]; e++) sm_pieces_link(&pieces, c, M->row[e]);
+    sm_pieces_finish(&pieces, NULL, warp->nodes);
+    warp->pieces = pieces.count;
+    warp->piece = sm_alloc((size_t)warp->nodes, sizeof *warp->piece);
+    memcpy(warp->piece, pieces.piece, (size_t)warp->nodes * sizeof *warp->piece);
+    warp->held = sm_alloc((size_t)warp->pieces, sizeof *warp->held);
+    warp->all = sm_alloc((size_t)warp->pieces, sizeof *warp->all);
+    sm_pieces_free(&pieces);
+    double *one = sm_alloc((size_t)warp->nodes, sizeof *one);
+    double *sum = sm_alloc((size_t)warp->pieces, sizeof *sum);
     for (long n = 0; n < warp->nodes; n++) one[n] = 1;
-    ref_sparse_apply(&shell->matrices.mass, 1, one, warp->mass);
-    for (long n = 0; n < warp->nodes; n++) sum += warp->mass[n];
-    for (long n = 0; n < warp->nodes; n++) warp->mass[n] /= sum;
+    ref_sparse_apply(M, 1, one, warp->mass);
+    for (long n = 0; n < warp->nodes; n++) sum[warp->piece[n]] += warp->mass[n];
+    for (long n = 0; n < warp->nodes; n++) warp->mass[n] /= sum[warp->piece[n]];
     free(one);
+    free(sum);
+}
+
+/* Pieces of a cracked shell would each be free to move. */
+static void soften(RefWarp *warp)
+{
+    const RefSparse *L = &warp->laplacian.stiffness;
+    for (long n = 0; n < warp->nodes; n++) L->value[L->start[n]] += SOFT * warp->mass[n];
 }
 
 SmCode ref_warp_create(const RefShell *shell, RefWarp *warp, SmError *error)
@@ -194,6 +228,8 @@ SmCode ref_warp_create(const RefShell *shell, RefWarp *warp, SmError *error)
     make_normals(shell, warp);
     make_laplacian(warp);
     share_mass(shell, warp);
+    warp->cut = shell->nodes.cut.pass;
+    if (warp->cut) soften(warp);
     return ref_warp_hold(warp, &(RefRows){0}, error);
 }
 
@@ -204,13 +240,17 @@ SmCode ref_warp_hold(RefWarp *warp, const RefRows *rows, SmError *error)
     warp->rows = ref_rows_copy(rows);
     warp->target = sm_alloc((size_t)rows->count, sizeof *warp->target);
     warp->bound = sm_alloc((size_t)rows->count, sizeof *warp->bound);
-    if (rows->count == 0) { /* any constant may be added: the first node's parameter stays */
+    for (long p = 0; p < warp->pieces; p++) warp->held[p] = false;
+    for (long e = 0; rows->count && e < rows->start[rows->count]; e++)
+        warp->held[warp->piece[rows->column[e]]] = true;
+    if (rows->count == 0 &&
+        !warp->cut) { /* any constant may be added: the first node's parameter stays */
         long at = ref_rows_begin(&pin, 1);
         pin.column[at] = 0;
         pin.value[at] = 1;
     }
     SmCode code =
-        ref_solver_create(&warp->laplacian, 0, rows->count ? rows : &pin, &warp->solver, error);
+        ref_solver_create(&warp->laplacian, 0, pin.count ? &pin : rows, &warp->solver, error);
     ref_rows_free(&pin);
     return code;
 }
@@ -258,12 +298,14 @@ static void lift(const double q[3], const double vector[2][3], double raised[2][
 
 void ref_warp_pull(RefWarp *warp, const double (*force)[3])
 {
-    double all[3] = {0};
+    double(*all)[3] = warp->all;
+    memset(all, 0, (size_t)warp->pieces * sizeof *all);
     for (long n = 0; n < warp->nodes; n++)
-        for (int d = 0; d < 3; d++) all[d] += force[n][d];
+        for (int d = 0; d < 3; d++) all[warp->piece[n]][d] += force[n][d];
     for (long n = 0; n < warp->nodes; n++)
         for (int d = 0; d < 3; d++) {
-            warp->drawn[n][d] = warp->rows.count ? 0 : warp->mass[n] * all[d];
+            int p = warp->piece[n];
+            warp->drawn[n][d] = warp->held[p] ? 0 : warp->mass[n] * all[p][d];
             warp->right[n][d] = force[n][d] - warp->drawn[n][d];
         }
     solve(warp, (const double(*)[3])warp->right, NULL, warp->answer);
@@ -402,14 +444,21 @@ static void turn_normal(RefWarp *warp, long n)
     for (int d = 0; d < 3; d++) warp->turned[n][d] = normal[d] - warp->rest_normal[n][d];
 }
 
-/* Of a body that nothing holds the mean moves as that of u. */
-static void drift(RefWarp *warp, const double (*u)[3])
+/* Adds to a field, of every piece that nothing holds, what makes its mean that of another. */
+static void match_means(RefWarp *warp, const double (*model)[3], double (*field)[3])
 {
-    double shift[3] = {0};
+    double(*shift)[3] = warp->all;
+    memset(shift, 0, (size_t)warp->pieces * sizeof *shift);
     for (long n = 0; n < warp->nodes; n++)
-        for (int d = 0; d < 3; d++) shift[d] += warp->mass[n] * (u[n][d] - warp->moved[n][d]);
+        for (int d = 0; d < 3 && !warp->held[warp->piece[n]]; d++)
+            shift[warp->piece[n]][d] += warp->mass[n] * (model[n][d] - field[n][d]);
     for (long n = 0; n < warp->nodes; n++)
-        for (int d = 0; d < 3; d++) warp->moved[n][d] += shift[d];
+        for (int d = 0; d < 3; d++) field[n][d] += shift[warp->piece[n]][d];
+}
+
+void ref_warp_anchor(RefWarp *warp, double (*u)[3])
+{
+    match_means(warp, (const double(*)[3])warp->moved, u);
 }
 
 void ref_warp_pose(RefWarp *warp, const double (*u)[3])
@@ -422,7 +471,7 @@ void ref_warp_pose(RefWarp *warp, const double (*u)[3])
             warp->pulled[n][d] = warp->drawn[n][d] + warp->sum[n][FORCE + d];
         }
     solve(warp, (const double(*)[3])warp->right, (const double(*)[3])warp->target, warp->moved);
-    if (!warp->rows.count) drift(warp, u);
+    match_means(warp, u, warp->moved);
     for (long n = 0; n < warp->nodes; n++) turn_normal(warp, n);
 }
 

@@ -11,6 +11,7 @@
 #ifndef REF_WARP_H
 #define REF_WARP_H
 
+#include "../../../lib/pieces.h"
 #include "../motion/frame_sums.h"
 #include "../solve/solver.h"
 #include "shell.h"
@@ -41,9 +42,13 @@ typedef struct {
     double (*lean)[2];                 /* [near[nodes]] and phi,k there */
     RefMatrices laplacian;             /* of the nodes; its stiffness alone */
     double (*X)[3], (*rest_normal)[3];
-    double *mass; /* [nodes] their shares of 1 */
+    double *mass; /* [nodes] their shares of 1, of each piece */
+    long pieces;  /* of what hangs together: one but for cracks */
+    int *piece;   /* [nodes] */
+    bool *held;   /* [pieces] by rows */
+    bool cut;     /* there are cracks */
 
-    RefRows rows; /* of the nodes: what holds; none: the nodes' mean moves as that of u */
+    RefRows rows; /* of the nodes: what holds; the mean of a piece that is not held moves as of u */
     RefSolver *solver;
     double (*target)[3]; /* [rows] by how much these move: the caller's */
 
@@ -58,6 +63,7 @@ typedef struct {
     double (*sum)[REF_FRAME_SLOPES]; /* [nodes] */
     double *column[2];               /* [nodes] */
     double *bound;                   /* [rows] */
+    double (*all)[3];                /* [pieces] */
 } RefWarp;
 
 /* Of a shell at rest that nothing holds. The caller frees. Errors: solver.h's. */
@@ -71,6 +77,10 @@ SmCode ref_warp_hold(RefWarp *warp, const RefRows *rows, SmError *error);
 /* Forces at the nodes, [nodes][3], whose work `pulled` is the slope of from the next pose on. Three
  * solves. */
 void ref_warp_pull(RefWarp *warp, const double (*force)[3]);
+
+/* Adds to u, [nodes][3], of every piece that is not held the constant that makes its mean that of
+ * `moved`. */
+void ref_warp_anchor(RefWarp *warp, double (*u)[3]);
 
 /* moved, turned and pulled from u, [nodes][3]. O(cells * covers), and three solves. */
 void ref_warp_pose(RefWarp *warp, const double (*u)[3]);

@@ -1,0 +1,88 @@
+#include "breaking.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../../lib/system/clock.h"
+
+void ref_breaking_free(RefBreaking *breaking)
+{
+    if (breaking->sheet) ref_cracked_free(&breaking->cracked);
+    sm_free_all(breaking->rest[0], breaking->rest[1]);
+    *breaking = (RefBreaking){.sheet = NULL};
+}
+
+SmCode ref_breaking_create(RefSheet *sheet, const RefCrackedOptions *cracked,
+                           const RefFractureOptions *options, RefBreaking *breaking, SmError *error)
+{
+    *breaking = (RefBreaking){.options = *options};
+    if (!(options->strength > 0))
+        return sm_fail(error, SM_USAGE, "a shell's strength is %g; give one above 0",
+                       options->strength);
+    if (!(cracked->least_share >= 0 && cracked->least_share <= 1))
+        return sm_fail(error, SM_USAGE, "cells are split below a share of %g; give one of 0..1",
+                       cracked->least_share);
+    if (cracked->most_splits < 0 || options->most_starts < 0)
+        return sm_fail(error, SM_USAGE,
+                       "%d splits of a cell and %d cracks a step; give none below 0",
+                       cracked->most_splits, options->most_starts);
+    breaking->sheet = sheet;
+    ref_cracked_create(&sheet->shell, &sheet->options.shell, cracked, &breaking->cracked);
+    return SM_OK;
+}
+
+static double *copy_field(const double *field, long size)
+{
+    double *copy = sm_alloc((size_t)size, sizeof *copy);
+    memcpy(copy, field, (size_t)size * sizeof *copy);
+    return copy;
+}
+
+/* Adds to displacements and velocities what is left of the old ones. */
+static void project(RefBreaking *breaking)
+{
+    RefSteps *steps = &breaking->sheet->steps;
+    long size = 3 * breaking->sheet->shell.nodes.count;
+    double *fields[2] = {steps->u, steps->v};
+    for (int f = 0; f < 2; f++) {
+        ref_solver_solve(steps->solver, breaking->rest[f], NULL, steps->other);
+        for (long n = 0; n < size; n++) fields[f][n] += steps->other[n];
+    }
+}
+
+SmCode ref_breaking_update(RefBreaking *breaking, SmError *error)
+{
+    RefSheet *sheet = breaking->sheet;
+    long size = 3 * sheet->shell.nodes.count;
+    double start = sm_now();
+    double *field[3] = {copy_field(sheet->steps.u, size), copy_field(sheet->steps.v, size),
+                        copy_field(sheet->warp.moved[0], size)};
+    double *rest[3] = {breaking->rest[0], breaking->rest[1], NULL};
+    RefCrackedFields fields = {ref_steps_mass_share(&sheet->options.damping, sheet->options.h), 3,
+                               field, rest};
+    ref_cracked_update(&breaking->cracked, &fields);
+    double middle = sm_now();
+    breaking->rest[0] = rest[0];
+    breaking->rest[1] = rest[1];
+    SmCode code = ref_sheet_renew(sheet, field[0], field[1], field[2], error);
+    if (code == SM_OK) {
+        project(breaking);
+        ref_sheet_settle(sheet);
+    }
+    breaking->seconds.update = middle - start;
+    breaking->seconds.solver = sm_now() - middle;
+    sm_free_all(field[0], field[1], field[2], rest[2]);
+    return code;
+}
+
+SmCode ref_breaking_step(RefBreaking *breaking, bool *changed, SmError *error)
+{
+    double start = sm_now();
+    ref_sheet_step(breaking->sheet);
+    double middle = sm_now();
+    *changed = ref_fracture_grow(&breaking->cracked, &breaking->options,
+                                 (const double(*)[3])breaking->sheet->steps.u) > 0;
+    breaking->seconds = (RefBreakingSeconds){middle - start, sm_now() - middle, 0, 0};
+    return *changed ? ref_breaking_update(breaking, error) : SM_OK;
+}
