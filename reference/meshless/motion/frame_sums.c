@@ -6,7 +6,7 @@
 
 #include "../../../lib/simd/real.h"
 
-enum { LANES = REF_SKIN_LANES };
+enum { LANES = REF_SKIN_LANES, TILE = REF_FRAME_TILE };
 
 static void apply(int modes, int rows, const double *row, const double *z, double *sums)
 {
@@ -108,4 +108,28 @@ static void spread(int count, const int *node, const double (*slope)[REF_FRAME_S
     }
 }
 
-const RefFrameSums SM_ISA_NAME(ref_frame_sums) = {apply, add, place, slopes, spread};
+/* Four rows of sums, a tile wide, which stay in registers. */
+static void square_tile(int rows, int columns, const double *left, const double *right, double *sum)
+{
+    double w[TILE] = {0}, x[TILE] = {0}, y[TILE] = {0}, z[TILE] = {0};
+    for (int r = 0; r < rows; r++, left += columns, right += columns)
+        for (int j = 0; j < TILE; j++) {
+            w[j] += left[0] * right[j];
+            x[j] += left[1] * right[j];
+            y[j] += left[2] * right[j];
+            z[j] += left[3] * right[j];
+        }
+    memcpy(sum, w, sizeof w);
+    memcpy(sum + columns, x, sizeof x);
+    memcpy(sum + 2 * columns, y, sizeof y);
+    memcpy(sum + 3 * columns, z, sizeof z);
+}
+
+static void square(int rows, int columns, const double *row, double *sum)
+{
+    for (int i = 0; i < columns; i += 4)
+        for (int j = i / TILE * TILE; j < columns; j += TILE)
+            square_tile(rows, columns, row + i, row + j, sum + i * columns + j);
+}
+
+const RefFrameSums SM_ISA_NAME(ref_frame_sums) = {apply, add, place, slopes, spread, square};

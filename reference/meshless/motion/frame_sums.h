@@ -1,12 +1,12 @@
 /* frame_sums.h - the sums that a frame consists of (meshless section 5.3), of the instruction set
  * in use (lib/isa.h): they stream the modes' rows and the skin's weights, which are all that a
- * frame reads. */
+ * frame reads; and, of a shell that breaks, the squares that its elements are. */
 #ifndef REF_FRAME_SUMS_H
 #define REF_FRAME_SUMS_H
 
 #include "skin.h"
 
-enum { REF_FRAME_SLOPES = 8 }; /* of a shell's cell, at once */
+enum { REF_FRAME_SLOPES = 8 /* of a shell's cell, at once */, REF_FRAME_TILE = 16 };
 
 typedef struct {
     /* sum[r] = row[r] . z, of `rows` rows of `modes`. */
@@ -26,6 +26,10 @@ typedef struct {
     void (*spread)(int count, const int *node, const double (*slope)[REF_FRAME_SLOPES],
                    const double gain[REF_FRAME_SLOPES][REF_FRAME_SLOPES],
                    double (*to)[REF_FRAME_SLOPES]);
+
+    /* sum[i][j] = sum over the rows of row[r][i] row[r][j] for j >= i; others are undefined. A
+     * whole number of REF_FRAME_TILE columns. */
+    void (*square)(int rows, int columns, const double *row, double *sum);
 } RefFrameSums;
 extern RefFrameSums ref_frame_sums;
 

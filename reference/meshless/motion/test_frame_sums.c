@@ -31,3 +31,21 @@ TEST(rows_are_applied_and_added)
         for (int k = 0; k < modes; k++) assert_true(fabs(modal[k] - wanted[k]) < 1e-14);
     }
 }
+
+TEST(rows_are_squared)
+{
+    unsigned seed = 2;
+    static double row[9][4 * REF_FRAME_TILE], sum[4 * REF_FRAME_TILE * 4 * REF_FRAME_TILE];
+    for (int trial = 0; trial < TRIALS; trial++) {
+        int rows = 1 + random_int(&seed, 9), columns = REF_FRAME_TILE * (1 + random_int(&seed, 4));
+        double *at = row[0];
+        for (int i = 0; i < rows * columns; i++) at[i] = random_between(&seed, -1, 1);
+        ref_frame_sums.square(rows, columns, at, sum);
+        for (int i = 0; i < columns; i++)
+            for (int j = i; j < columns; j++) {
+                double one = 0;
+                for (int r = 0; r < rows; r++) one += at[r * columns + i] * at[r * columns + j];
+                assert_true(fabs(sum[i * columns + j] - one) < 1e-13);
+            }
+    }
+}

@@ -312,13 +312,15 @@ bool ref_cracks_passed(const void *cracks, const double x[3], const double from[
     return pass(cracks, true, x, from, reach, part);
 }
 
-bool ref_cracks_changed(const RefCracks *cracks, const double x[2], const double from[2])
+bool ref_cracks_changed(const RefCracks *cracks, const double x[2], const double from[2],
+                        double reach)
 {
     int count;
     const int *member = near(cracks, x, &count);
     for (int n = 0; n < count; n++) {
         const RefCrackPiece *piece = cracks->piece + member[n];
-        if (piece->changed == cracks->now && crosses(piece, x, from)) return true;
+        if (piece->changed != cracks->now || !crosses(piece, x, from)) continue;
+        if (piece->born == cracks->now || piece->before < SOFT * reach) return true;
     }
     return false;
 }

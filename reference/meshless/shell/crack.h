@@ -74,8 +74,9 @@ bool ref_cracks_pass(const void *cracks, const double x[3], const double from[3]
 bool ref_cracks_passed(const void *cracks, const double x[3], const double from[3], double reach,
                        double part[6]);
 
-/* Whether changes that are not settled may change what gets from `from` to x. */
-bool ref_cracks_changed(const RefCracks *cracks, const double x[2], const double from[2]);
+/* Whether changes that are not settled change what gets from `from` to x of such a weight. */
+bool ref_cracks_changed(const RefCracks *cracks, const double x[2], const double from[2],
+                        double reach);
 
 /* Whether there may be such changes for any x of a box, from anywhere within the margin. */
 bool ref_cracks_stir(const RefCracks *cracks, const double low[2], const double high[2]);

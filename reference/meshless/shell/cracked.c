@@ -385,7 +385,7 @@ static bool is_stale(const RefCracked *cracked, const RefCrackedCell *cell,
             const double *at = nodes->position[member[n]], reach = nodes->reach[member[n]];
             if (!(fabs(x[0] - at[0]) < reach && fabs(x[1] - at[1]) < reach)) continue;
             if (fresh[nodes->owner ? nodes->owner[member[n]] : member[n]]) return true;
-            if (ref_cracks_changed(&cracked->cracks, x, at)) return true;
+            if (ref_cracks_changed(&cracked->cracks, x, at, reach)) return true;
         }
     }
     return false;

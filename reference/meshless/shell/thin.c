@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../../../lib/vector.h"
+#include "../motion/frame_sums.h"
 
 /* Functions that leave a surface less than this share of its area are none that say how it bends:
  * its inverse metric would be too large. */
@@ -55,63 +56,50 @@ void ref_thin_strains(const RefFrame *frame, const double part[6], double B[6][3
     }
 }
 
-/* Rows whose products are the blocks of the stiffness. */
-static void weigh_rows(const double B[6][3], const double G[3][3], const double weight[2],
-                       double row[18])
+/* Rows whose products are the blocks of the stiffness, of one function at one sample: added to a
+ * matrix of this many columns. */
+static void add_rows(const double B[6][3], const double G[3][3], const double weight[2],
+                     int columns, double *row)
 {
     for (int kind = 0; kind < 2; kind++)
-        for (int i = 0; i < 3; i++)
+        for (int i = 0; i < 3; i++, row += columns)
             for (int d = 0; d < 3; d++) {
                 double sum = 0;
                 for (int j = i; j < 3; j++) sum += G[i][j] * B[3 * kind + j][d];
-                row[9 * kind + 3 * i + d] = weight[kind] * sum;
+                row[d] += weight[kind] * sum;
             }
 }
 
-/* All pairs I <= J of a sample's functions; a node that is there twice meets itself, both ways. */
-static void add_sample(const RefSamples *samples, long p, double mass, bool stiff,
-                       const RefThinWork *work, RefElement *element)
+/* Columns of a matrix that is squared. */
+static int columns_for(int count)
 {
-    const int *node = samples->node + samples->start[p];
-    const double(*part)[6] = (const double(*)[6])(samples->part + samples->start[p]);
-    int count = (int)(samples->start[p + 1] - samples->start[p]);
-    for (int e = 0; e < count; e++)
-        for (int f = 0; f < count; f++) {
-            if (node[e] > node[f]) continue;
-            const double *left = work->row[e], *right = work->row[f];
-            double *sum =
-                element->sum[(long)work->number[node[e]] * element->count + work->number[node[f]]];
-            sum[0] += mass * part[e][0] * part[f][0];
-            for (int i = 0; stiff && i < 6; i++)
-                for (int a = 0; a < 3; a++)
-                    for (int b = 0; b < 3; b++)
-                        sum[1 + 3 * a + b] += left[3 * i + a] * right[3 * i + b];
-        }
+    return (count + REF_FRAME_TILE - 1) / REF_FRAME_TILE * REF_FRAME_TILE;
 }
 
-/* Adds a sample's share; false where that is no stiffness. */
-static bool integrate(const double (*X)[3], const RefSamples *samples, long p, double t,
-                      const RefMaterial *material, RefThinWork *work, RefElement *element)
+/* Writes a sample's rows; false where they are none of the stiffness. A node that is there twice
+ * has both its functions in its columns. */
+static bool write_sample(const double (*X)[3], const RefSamples *samples, long p, double t,
+                         const RefMaterial *material, int nodes, int sample, RefThinWork *work)
 {
     long from = samples->start[p];
-    int count = (int)(samples->start[p + 1] - from);
+    int count = (int)(samples->start[p + 1] - from), columns = columns_for(3 * nodes);
+    const int *node = samples->node + from;
     const double(*part)[6] = (const double(*)[6])(samples->part + from);
-    RefFrame frame = ref_middle_at(X, count, samples->node + from, part);
+    RefFrame frame = ref_middle_at(X, count, node, part);
     double nu = material->poisson, G[3][3], B[6][3], area = samples->area[p];
     double membrane = area * material->young * t / (1 - nu * nu);
-    double weight[2] = {sqrt(membrane), sqrt(membrane / 12) * t};
+    double weight[2] = {sqrt(membrane), sqrt(membrane / 12) * t}, root = sqrt(area * t);
     bool stiff = ref_thin_is_stiff(&frame, samples->weight[p], area);
-    if (count > work->rows) {
-        work->rows = 2 * count;
-        work->row = sm_realloc(work->row, (size_t)work->rows, sizeof *work->row);
-    }
-    if (stiff) factor_of(frame.inverse, nu, G);
-    for (int e = 0; stiff && e < count; e++) {
+    for (int e = 0; e < count; e++)
+        work->shape[sample * columns_for(nodes) + work->number[node[e]]] += root * part[e][0];
+    if (!stiff) return false;
+    factor_of(frame.inverse, nu, G);
+    for (int e = 0; e < count; e++) {
         ref_thin_strains(&frame, part[e], B);
-        weigh_rows((const double(*)[3])B, (const double(*)[3])G, weight, work->row[e]);
+        add_rows((const double(*)[3])B, (const double(*)[3])G, weight, columns,
+                 work->strain + 6 * sample * columns + 3 * work->number[node[e]]);
     }
-    add_sample(samples, p, area * t, stiff, work, element);
-    return stiff;
+    return true;
 }
 
 RefThinWork ref_thin_work(long nodes)
@@ -124,8 +112,8 @@ RefThinWork ref_thin_work(long nodes)
 
 void ref_thin_work_free(RefThinWork *work)
 {
-    sm_free_all(work->node, work->number, work->row);
-    *work = (RefThinWork){.rows = 0};
+    sm_free_all(work->node, work->number, work->strain, work->shape, work->square);
+    *work = (RefThinWork){.node = NULL};
 }
 
 void ref_element_free(RefElement *element)
@@ -134,16 +122,42 @@ void ref_element_free(RefElement *element)
     *element = (RefElement){.count = 0};
 }
 
+/* Squares of what was written, as pairs of nodes have them. */
+static void square_rows(const RefThinWork *work, RefElement *element)
+{
+    int count = element->count, columns = columns_for(count);
+    ref_frame_sums.square(REF_SAMPLES_PER_CELL, columns, work->shape, work->square);
+    for (int a = 0; a < count; a++)
+        for (int b = a; b < count; b++)
+            element->sum[(long)a * count + b][0] = work->square[(long)a * columns + b];
+    columns = columns_for(3 * count);
+    ref_frame_sums.square(6 * REF_SAMPLES_PER_CELL, columns, work->strain, work->square);
+    for (int a = 0; a < count; a++)
+        for (int b = a; b < count; b++)
+            for (int k = 0; k < 9; k++) {
+                int i = 3 * a + k / 3, j = 3 * b + k % 3, low = i < j ? i : j, high = i + j - low;
+                element->sum[(long)a * count + b][1 + k] = work->square[(long)low * columns + high];
+            }
+}
+
 int ref_thin_element(const double (*X)[3], const RefSamples *samples, long cell, double thickness,
                      const RefMaterial *material, RefThinWork *work, RefElement *element)
 {
     int soft = 0, count = ref_samples_nodes(samples, cell, work->node, work->number);
+    long wide = columns_for(3 * count), narrow = columns_for(count);
     *element = (RefElement){.count = count,
                             .node = sm_alloc((size_t)count, sizeof(int)),
                             .sum = sm_alloc((size_t)count * (size_t)count, sizeof(double[10]))};
-    for (int n = 0; n < count; n++) element->node[n] = work->node[n];
-    for (long p = cell * REF_SAMPLES_PER_CELL; p < (cell + 1) * REF_SAMPLES_PER_CELL; p++)
-        soft += !integrate(X, samples, p, thickness, material, work, element);
+    memcpy(element->node, work->node, (size_t)count * sizeof *work->node);
+    sm_make_room(work->strain, work->room[0], 6 * REF_SAMPLES_PER_CELL * wide);
+    sm_make_room(work->shape, work->room[1], REF_SAMPLES_PER_CELL * narrow);
+    sm_make_room(work->square, work->room[2], wide * wide);
+    memset(work->strain, 0, (size_t)(6 * REF_SAMPLES_PER_CELL * wide) * sizeof(double));
+    memset(work->shape, 0, (size_t)(REF_SAMPLES_PER_CELL * narrow) * sizeof(double));
+    for (int n = 0; n < REF_SAMPLES_PER_CELL; n++)
+        soft += !write_sample(X, samples, cell * REF_SAMPLES_PER_CELL + n, thickness, material,
+                              count, n, work);
+    square_rows(work, element);
     for (int n = 0; n < count; n++) work->number[element->node[n]] = -1;
     return soft;
 }

@@ -23,8 +23,10 @@ typedef struct {
 /* What ref_thin_element() works in; the caller frees. */
 typedef struct {
     int *node, *number; /* [nodes] */
-    double (*row)[18];  /* the strains' rows, weighted, of one sample */
-    long rows;
+    double *strain;     /* [6 samples][columns] roots of the stiffness: weighted strains' rows */
+    double *shape;      /* [samples][columns] and of the mass */
+    double *square;     /* [columns][columns] */
+    long room[3];
 } RefThinWork;
 
 RefThinWork ref_thin_work(long nodes);
