@@ -11,12 +11,33 @@ enum { BLOCK = 64, LANES = REF_SKIN_LANES };
 typedef struct {
     const RefSkinCarrier *carrier;
     RefShape shape;
-    double lift;
-    int *number;           /* [nodes] in the block's list, or -1 */
-    long nodes, node_room; /* of all blocks */
-    long weights, weight_room;
+    int *number; /* [nodes] in the block's list, or -1 */
+    int most;    /* functions of a point */
+    int count[BLOCK];
+    int *node; /* [BLOCK][most] */
+    float *value;
+    float lift[BLOCK];
     long loose;
 } Builder;
+
+static Builder builder_of(const RefSkinCarrier *carrier)
+{
+    int most = carrier->nodes->most;
+    Builder builder = {.carrier = carrier,
+                       .shape = ref_shape_create(carrier->nodes),
+                       .number = sm_alloc((size_t)carrier->nodes->count, sizeof(int)),
+                       .most = most,
+                       .node = sm_alloc(BLOCK * (size_t)most, sizeof(int)),
+                       .value = sm_alloc(BLOCK * (size_t)most, sizeof(float))};
+    for (long n = 0; n < carrier->nodes->count; n++) builder.number[n] = -1;
+    return builder;
+}
+
+static void builder_free(Builder *builder)
+{
+    ref_shape_free(&builder->shape);
+    sm_free_all(builder->number, builder->node, builder->value);
+}
 
 typedef struct {
     long cell, point;
@@ -37,70 +58,115 @@ static Keyed *sort_points(const RefSkinCarrier *carrier, long count)
     return key;
 }
 
-/* The weights at a point, or the nearest node alone. */
-static void evaluate(Builder *builder, long point)
+/* The weights at point p of a block, or the nearest node alone. */
+static void evaluate(Builder *builder, int p, long point)
 {
     const RefSkinCarrier *carrier = builder->carrier;
-    builder->lift = 0;
-    if (carrier->weigh(carrier->data, point, &builder->shape, &builder->lift)) return;
-    builder->loose++;
-    builder->shape.count = 1;
-    builder->shape.node[0] = carrier->nearest(carrier->data, point);
-    builder->shape.value[0] = 1;
+    double lift = 0;
+    if (!carrier->weigh(carrier->data, point, &builder->shape, &lift)) {
+        builder->loose++;
+        builder->shape.count = 1;
+        builder->shape.node[0] = carrier->nearest(carrier->data, point);
+        builder->shape.value[0] = 1;
+    }
+    builder->lift[p] = (float)lift;
+    builder->count[p] = builder->shape.count;
+    for (int n = 0; n < builder->shape.count; n++) {
+        builder->node[p * builder->most + n] = builder->shape.node[n];
+        builder->value[p * builder->most + n] = (float)builder->shape.value[n];
+    }
 }
 
-/* The block's nodes, behind those of the blocks before. */
+/* The block's nodes, behind all others. */
 static void list_nodes(Builder *builder, RefSkin *skin, RefSkinBlock *block)
 {
-    for (int p = 0; p < block->points; p++) {
-        evaluate(builder, skin->order[block->first + p]);
-        for (int n = 0; n < builder->shape.count; n++) {
-            int node = builder->shape.node[n];
+    block->node = skin->nodes;
+    block->nodes = 0;
+    for (int p = 0; p < block->points; p++)
+        for (int n = 0; n < builder->count[p]; n++) {
+            int node = builder->node[p * builder->most + n];
             if (builder->number[node] >= 0) continue;
-            sm_make_room(skin->node, builder->node_room, builder->nodes + 1);
+            sm_make_room(skin->node, skin->node_room, skin->nodes + 1);
             builder->number[node] = block->nodes++;
-            skin->node[builder->nodes++] = node;
+            skin->node[skin->nodes++] = node;
         }
-    }
 }
 
 static void fill_weights(Builder *builder, RefSkin *skin, RefSkinBlock *block)
 {
-    long size = (long)block->nodes * block->room, loose = builder->loose;
-    sm_make_room(skin->weight, builder->weight_room, builder->weights + size);
-    float *weight = skin->weight + builder->weights;
+    long size = (long)block->nodes * block->room;
+    block->weight = skin->weights;
+    sm_make_room(skin->weight, skin->weight_room, skin->weights + size);
+    float *weight = skin->weight + skin->weights;
     memset(weight, 0, (size_t)size * sizeof *weight);
-    builder->weights += size;
+    skin->weights += size;
     for (int p = 0; p < block->points; p++) {
-        evaluate(builder, skin->order[block->first + p]);
-        for (int n = 0; n < builder->shape.count; n++)
-            weight[(p / LANES * block->nodes + builder->number[builder->shape.node[n]]) * LANES +
-                   p % LANES] += (float)builder->shape.value[n];
-        if (skin->lift) skin->lift[block->first + p] = (float)builder->lift;
+        for (int n = 0; n < builder->count[p]; n++) {
+            int column = builder->number[builder->node[p * builder->most + n]];
+            weight[(p / LANES * block->nodes + column) * LANES + p % LANES] +=
+                builder->value[p * builder->most + n];
+        }
+        if (skin->lift) skin->lift[block->first + p] = builder->lift[p];
     }
-    builder->loose = loose; /* counted while the nodes were listed */
     for (int n = 0; n < block->nodes; n++) builder->number[skin->node[block->node + n]] = -1;
 }
 
-static void add_block(Builder *builder, RefSkin *skin, long first, int points)
+static void weigh_block(Builder *builder, RefSkin *skin, RefSkinBlock *block)
 {
-    RefSkinBlock *block = skin->block + skin->blocks++;
-    *block = (RefSkinBlock){.points = points,
-                            .room = (points + LANES - 1) / LANES * LANES,
-                            .first = first,
-                            .node = builder->nodes,
-                            .weight = builder->weights};
+    for (int p = 0; p < block->points; p++) evaluate(builder, p, skin->order[block->first + p]);
     list_nodes(builder, skin, block);
     fill_weights(builder, skin, block);
+}
+
+/* Scratch for the fullest block. */
+static void make_near(RefSkin *skin)
+{
+    int most = 0;
+    for (long b = 0; b < skin->blocks; b++)
+        if (skin->block[b].nodes > most) most = skin->block[b].nodes;
+    skin->near = sm_realloc(skin->near, 2 * (size_t)most, sizeof *skin->near);
+}
+
+/* Nodes and weights of blocks one behind the other, and nothing between. */
+static void compact(RefSkin *skin)
+{
+    RefSkin old = *skin;
+    skin->nodes = skin->weights = 0;
+    skin->node = sm_alloc((size_t)old.node_room, sizeof *skin->node);
+    skin->weight = sm_alloc((size_t)old.weight_room, sizeof *skin->weight);
+    for (long b = 0; b < skin->blocks; b++) {
+        RefSkinBlock *block = skin->block + b;
+        long size = (long)block->nodes * block->room;
+        memcpy(skin->node + skin->nodes, old.node + block->node,
+               (size_t)block->nodes * sizeof *skin->node);
+        memcpy(skin->weight + skin->weights, old.weight + block->weight,
+               (size_t)size * sizeof *skin->weight);
+        block->node = skin->nodes;
+        block->weight = skin->weights;
+        skin->nodes += block->nodes;
+        skin->weights += size;
+    }
+    free(old.node);
+    free(old.weight);
+}
+
+void ref_skin_renew(const RefSkinCarrier *carrier, bool (*stale)(const void *data, long cell),
+                    RefSkin *skin, long *loose)
+{
+    Builder builder = builder_of(carrier);
+    for (long b = 0; b < skin->blocks; b++)
+        if (stale(carrier->data, skin->block[b].cell)) weigh_block(&builder, skin, skin->block + b);
+    if (skin->weights * sizeof(float) > 2 * ref_skin_bytes(skin)) compact(skin);
+    make_near(skin);
+    if (loose) *loose += builder.loose;
+    builder_free(&builder);
 }
 
 void ref_skin_build(const RefSkinCarrier *carrier, bool lifted, long count, const double (*x)[3],
                     RefSkin *skin, long *loose)
 {
     Keyed *key = sort_points(carrier, count);
-    Builder builder = {.carrier = carrier, .shape = ref_shape_create(carrier->nodes)};
-    builder.number = sm_alloc((size_t)carrier->nodes->count, sizeof *builder.number);
-    for (long n = 0; n < carrier->nodes->count; n++) builder.number[n] = -1;
+    Builder builder = builder_of(carrier);
     *skin = (RefSkin){.count = count};
     skin->order = sm_alloc((size_t)count, sizeof *skin->order);
     skin->rest = sm_alloc((size_t)count, sizeof *skin->rest);
@@ -112,15 +178,16 @@ void ref_skin_build(const RefSkinCarrier *carrier, bool lifted, long count, cons
     }
     for (long p = 0, end; p < count; p = end) {
         for (end = p + 1; end < count && end - p < BLOCK && key[end].cell == key[p].cell;) end++;
-        add_block(&builder, skin, p, (int)(end - p));
+        RefSkinBlock *block = skin->block + skin->blocks++;
+        *block = (RefSkinBlock){.points = (int)(end - p),
+                                .room = (int)(end - p + LANES - 1) / LANES * LANES,
+                                .first = p,
+                                .cell = key[p].cell};
+        weigh_block(&builder, skin, block);
     }
     if (loose) *loose = builder.loose;
-    int most = 0;
-    for (long b = 0; b < skin->blocks; b++)
-        if (skin->block[b].nodes > most) most = skin->block[b].nodes;
-    skin->near = sm_alloc(2 * (size_t)most, sizeof *skin->near);
-    ref_shape_free(&builder.shape);
-    free(builder.number);
+    make_near(skin);
+    builder_free(&builder);
     free(key);
 }
 

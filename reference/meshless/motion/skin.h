@@ -14,6 +14,7 @@ typedef struct {
     int points, room; /* room: points rounded up to whole vectors */
     int nodes;
     long first, node, weight; /* where its points, nodes and weights begin */
+    long cell;                /* its carrier's */
 } RefSkinBlock;
 
 typedef struct {
@@ -25,6 +26,7 @@ typedef struct {
     int *node;
     float *weight; /* block by block, [room / REF_SKIN_LANES][nodes][REF_SKIN_LANES] */
     float *lift;   /* [count] how far points are off a shell's surface along its normal; or NULL */
+    long nodes, node_room, weights, weight_room; /* how many there are */
     float (*near)[3]; /* scratch: displacements of a block's nodes, and how their normals turn */
 } RefSkin;
 
@@ -40,6 +42,11 @@ typedef struct {
 
 /* `lifted`: points of a shell. */
 void ref_skin_build(const RefSkinCarrier *carrier, bool lifted, long count, const double (*x)[3],
+                    RefSkin *skin, long *loose);
+
+/* Blocks whose cell `stale` says so of are weighed again. What they had before is lost until it is
+ * more than what is in use; then all moves together. `loose` (may be NULL) grows by new ones. */
+void ref_skin_renew(const RefSkinCarrier *carrier, bool (*stale)(const void *data, long cell),
                     RefSkin *skin, long *loose);
 
 /* Points that too few nodes cover move with the node nearest to them; `loose` (may be NULL)

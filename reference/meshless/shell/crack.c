@@ -325,6 +325,15 @@ bool ref_cracks_changed(const RefCracks *cracks, const double x[2], const double
     return false;
 }
 
+bool ref_cracks_part(const RefCracks *cracks, const double x[2], const double from[2])
+{
+    int count;
+    const int *member = near(cracks, x, &count);
+    for (int n = 0; n < count; n++)
+        if (crosses(cracks->piece + member[n], x, from)) return true;
+    return false;
+}
+
 bool ref_cracks_stir(const RefCracks *cracks, const double low[2], const double high[2])
 {
     int first[2], last[2];

@@ -78,6 +78,9 @@ bool ref_cracks_passed(const void *cracks, const double x[3], const double from[
 bool ref_cracks_changed(const RefCracks *cracks, const double x[2], const double from[2],
                         double reach);
 
+/* Whether a crack is between two places, the first in the rectangle. */
+bool ref_cracks_part(const RefCracks *cracks, const double x[2], const double from[2]);
+
 /* Whether there may be such changes for any x of a box, from anywhere within the margin. */
 bool ref_cracks_stir(const RefCracks *cracks, const double low[2], const double high[2]);
 

@@ -25,7 +25,10 @@ void ref_cracked_free(RefCracked *cracked)
 {
     for (long c = 0; cracked->cell && c < cracked->shell->tree.count; c++)
         forget_cell(cracked->cell + c);
-    if (cracked->shell) cracked->shell->nodes.cut = (RefCut){NULL, NULL};
+    if (cracked->shell) {
+        cracked->shell->nodes.cut = (RefCut){NULL, NULL};
+        cracked->shell->functions = (RefShellFunctions){NULL, NULL};
+    }
     ref_element_rows_free(&cracked->rows);
     ref_cracks_free(&cracked->cracks);
     ref_nodes_free(&cracked->whole);
@@ -136,6 +139,47 @@ static void count_all(RefCracked *cracked)
     }
 }
 
+/* The sample of a cell that is nearest to a place and not beyond a crack; -1: none is. */
+static int sample_beside(const RefCracked *cracked, long c, const double theta[2])
+{
+    const RefSamples *samples = &cracked->cell[c].samples;
+    const RefQuadtree *tree = &cracked->shell->tree;
+    double middle[2], edge[2], least = INFINITY;
+    int best = -1;
+    ref_quadtree_cell(tree, tree->cell + c, middle, edge);
+    int nearest = ref_samples_nearest(middle, edge, theta);
+    if (!ref_cracks_part(&cracked->cracks, theta, samples->theta[nearest])) return nearest;
+    for (int n = 0; n < REF_SAMPLES_PER_CELL; n++) {
+        const double *at = samples->theta[n];
+        double far = hypot(at[0] - theta[0], at[1] - theta[1]);
+        if (far >= least || ref_cracks_part(&cracked->cracks, theta, at)) continue;
+        least = far;
+        best = n;
+    }
+    return best;
+}
+
+/* The functions at any place, from the samples' beside it. */
+static int functions_at(const void *samples, const double theta[3], RefShape *shape)
+{
+    const RefCracked *cracked = samples;
+    const RefShell *shell = cracked->shell;
+    int c = ref_quadtree_at(&shell->tree, theta), n = sample_beside(cracked, c, theta);
+    if (n < 0)
+        return ref_samples_shape(&shell->nodes, shell->basis, cracked->cell[c].reach, theta, shape);
+    ref_samples_expand(&cracked->cell[c].samples, n, theta, shape);
+    return shape->count ? (int)shell->basis : 0;
+}
+
+bool ref_cracked_again(const RefCracked *cracked, long cell)
+{
+    int child = cracked->shell->tree.cell[cell].child;
+    if (child < 0) return cracked->cell[cell].again;
+    for (int k = 0; k < 4; k++)
+        if (ref_cracked_again(cracked, child + k)) return true;
+    return false;
+}
+
 void ref_cracked_remake(RefCracked *cracked)
 {
     RefShell *shell = cracked->shell;
@@ -173,6 +217,7 @@ void ref_cracked_create(RefShell *shell, const RefShellOptions *options,
     find_lift(cracked);
     shell->nodes.cut = (RefCut){ref_cracks_pass, &cracked->cracks};
     ref_cracked_remake(cracked);
+    shell->functions = (RefShellFunctions){functions_at, cracked};
 }
 
 /* The share of its own weight that a cell's node gets from its cover, as far as this is on the
@@ -483,11 +528,13 @@ static void remake_stale(RefCracked *cracked, const unsigned char *fresh, unsign
         RefCrackedCell *cell = cracked->cell + c;
         RefSamples old = cell->samples;
         bool was = cell->made;
+        cell->again = false;
         if (was && terminal(cracked, c) && !is_stale(cracked, cell, fresh)) continue;
         touch(&cell->element, touched);
         ref_element_free(&cell->element);
         cell->samples = (RefSamples){.count = 0};
         cell->made = false;
+        cell->again = true;
         if (terminal(cracked, c)) {
             if (was) {
                 ref_samples_of(&shell->tree, c, &shell->nodes, shell->basis, &shape,

@@ -29,6 +29,7 @@ typedef struct {
     double reach;                         /* of its nodes */
     int soft;                             /* samples without stiffness */
     bool made;                            /* has samples and an element */
+    bool again;                           /* by the last update */
 } RefCrackedCell;
 
 /* How much there is, and what the last update made again. */
@@ -74,6 +75,9 @@ typedef struct {
  * field's sum over the mass, of a velocity the momentum, stays what it was. `fields` may be NULL.
  * Returns whether nodes are others than before. */
 bool ref_cracked_update(RefCracked *cracked, RefCrackedFields *fields);
+
+/* Whether the last update took samples of a cell again, or of one that is part of it. */
+bool ref_cracked_again(const RefCracked *cracked, long cell);
 
 /* The slow twin: makes all again, of the tree and the nodes as they are. */
 void ref_cracked_remake(RefCracked *cracked);

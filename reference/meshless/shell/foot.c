@@ -13,6 +13,8 @@ typedef struct {
     const RefWarp *warp;
     const double (*theta)[2];
     const double (*x)[3];
+    bool (*again)(const void *cracked, long cell);
+    const void *cracked;
 } Feet;
 
 static long cell_of(const void *data, long point)
@@ -89,7 +91,7 @@ static void find_foot(const double place[3][3], const double normal[3][3], const
     double far = beyond(first, edge, height);
     for (int k = 0; k < 3 && far > 1; k++) first[k] /= far;
     memcpy(o, first, sizeof first);
-    for (int n = 0; n < MOST_STEPS && beyond(o, edge, height) <= 1; n++)
+    for (int n = 0; n < MOST_STEPS && off > 1e-12 * height && beyond(o, edge, height) <= 1; n++)
         off = step(place, normal, x, o);
     if (!(off < 1e-6 * height && beyond(o, edge, height) <= 1)) memcpy(o, first, sizeof first);
 }
@@ -101,7 +103,7 @@ bool ref_foot_at(const RefShell *shell, const RefWarp *warp, const double theta[
     const double at[3] = {theta[0], theta[1]};
     double place[3][3], normal[3][3], o[3], middle[2], edge[2];
     *lift = 0;
-    if (!ref_mls_at(&shell->nodes, shell->basis, at, shape)) return false;
+    if (!ref_shell_shape(shell, at, shape)) return false;
     sum_parts(warp, shape, place, normal);
     ref_quadtree_cell(tree, tree->cell + ref_quadtree_at(tree, theta), middle, edge);
     double length = sqrt(sqrt(sm_dot(place[1], place[1]) * sm_dot(place[2], place[2])));
@@ -119,10 +121,25 @@ static bool weigh(const void *data, long point, RefShape *shape, double *lift)
     return ref_foot_at(feet->shell, feet->warp, feet->theta[point], feet->x[point], shape, lift);
 }
 
+static bool is_stale(const void *data, long cell)
+{
+    const Feet *feet = data;
+    return feet->again(feet->cracked, cell);
+}
+
+void ref_foot_renew(const RefShell *shell, const RefWarp *warp, const double (*theta)[2],
+                    const double (*x)[3], bool (*again)(const void *cracked, long cell),
+                    const void *cracked, RefSkin *skin, long *loose)
+{
+    Feet feet = {shell, warp, theta, x, again, cracked};
+    RefSkinCarrier carrier = {&feet, &shell->nodes, cell_of, weigh, nearest};
+    ref_skin_renew(&carrier, is_stale, skin, loose);
+}
+
 void ref_foot_skin(const RefShell *shell, const RefWarp *warp, long count, const double (*theta)[2],
                    const double (*x)[3], RefSkin *skin, long *loose)
 {
-    Feet feet = {shell, warp, theta, x};
+    Feet feet = {.shell = shell, .warp = warp, .theta = theta, .x = x};
     RefSkinCarrier carrier = {&feet, &shell->nodes, cell_of, weigh, nearest};
     ref_skin_build(&carrier, true, count, x, skin, loose);
 }

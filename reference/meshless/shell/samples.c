@@ -71,6 +71,37 @@ int ref_samples_shape(const RefNodes *nodes, RefBasis basis, double edge, const 
     return shape->count ? REF_MLS_PLANE_CONSTANT : 0;
 }
 
+void ref_samples_expand(const RefSamples *samples, long near, const double theta[2],
+                        RefShape *shape)
+{
+    const double *from = samples->theta[near];
+    double x = theta[0] - from[0], y = theta[1] - from[1];
+    long start = samples->start[near];
+    shape->count = (int)(samples->start[near + 1] - start);
+    for (int n = 0; n < shape->count; n++) {
+        const double *p = samples->part[start + n];
+        shape->node[n] = samples->node[start + n];
+        shape->value[n] =
+            p[0] + x * p[1] + y * p[2] + x * x / 2 * p[3] + y * y / 2 * p[4] + x * y * p[5];
+        shape->gradient[n][0] = p[1] + x * p[3] + y * p[5];
+        shape->gradient[n][1] = p[2] + y * p[4] + x * p[5];
+        for (int m = 0; m < 3; m++) shape->second[n][m] = p[3 + m];
+    }
+}
+
+/* Points of a part lie at 0.11, 0.5 and 0.89 of it. */
+int ref_samples_nearest(const double middle[2], const double edge[2], const double theta[2])
+{
+    int which[2];
+    for (int d = 0; d < 2; d++) {
+        double place = PARTS * ((theta[d] - middle[d]) / edge[d] + 0.5);
+        int part = (int)fmin(fmax(floor(place), 0), PARTS - 1);
+        double within = place - part;
+        which[d] = ORDER * part + (within < 0.306 ? 0 : within < 0.694 ? 1 : 2);
+    }
+    return which[1] * ALONG + which[0];
+}
+
 void ref_samples_part(const RefShape *shape, int n, double part[6])
 {
     part[0] = shape->value[n];

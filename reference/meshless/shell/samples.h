@@ -38,6 +38,14 @@ void ref_samples_of(const RefQuadtree *tree, long cell, const RefNodes *nodes, R
 int ref_samples_shape(const RefNodes *nodes, RefBasis basis, double edge, const double x[3],
                       RefShape *shape);
 
+/* The functions at a place from those at the sample `near` beside it: Taylor's to second order,
+ * which reproduce all that the basis does. */
+void ref_samples_expand(const RefSamples *samples, long near, const double theta[2],
+                        RefShape *shape);
+
+/* Of a cell's samples the one that is nearest to a place, which may be out of the cell. */
+int ref_samples_nearest(const double middle[2], const double edge[2], const double theta[2]);
+
 /* A sample's six parts of function n. */
 void ref_samples_part(const RefShape *shape, int n, double part[6]);
 

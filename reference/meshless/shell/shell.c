@@ -42,12 +42,18 @@ SmCode ref_shell_build(const RefChart *chart, const RefShellOptions *options, Re
     return code;
 }
 
-bool ref_shell_at(const RefShell *shell, const double theta[3], RefShape *shape, RefFrame *frame)
+int ref_shell_shape(const RefShell *shell, const double theta[3], RefShape *shape)
 {
     double middle[2], edge[2];
+    if (shell->functions.at) return shell->functions.at(shell->functions.samples, theta, shape);
     const RefCell *cell = shell->tree.cell + ref_quadtree_at(&shell->tree, theta);
     ref_quadtree_cell(&shell->tree, cell, middle, edge);
-    if (!ref_samples_shape(&shell->nodes, shell->basis, edge[0], theta, shape)) return false;
+    return ref_samples_shape(&shell->nodes, shell->basis, edge[0], theta, shape);
+}
+
+bool ref_shell_at(const RefShell *shell, const double theta[3], RefShape *shape, RefFrame *frame)
+{
+    if (!ref_shell_shape(shell, theta, shape)) return false;
     *frame = ref_middle_of((const double(*)[3])shell->X, shape);
     return true;
 }

@@ -14,6 +14,13 @@ typedef struct {
     RefMaterial material;
 } RefShellOptions;
 
+/* Where functions are kept at samples (cracked.h): writes those at a place, and returns the basis,
+ * or 0 where there are none. */
+typedef struct {
+    int (*at)(const void *samples, const double theta[3], RefShape *shape);
+    const void *samples;
+} RefShellFunctions;
+
 typedef struct {
     RefChart chart;
     RefQuadtree tree;
@@ -21,6 +28,7 @@ typedef struct {
     RefBasis basis;
     double (*X)[3]; /* [nodes] the parameters of the middle surface, as displacements have them */
     RefMatrices matrices;
+    RefShellFunctions functions; /* at is NULL: computed where they are wanted */
 } RefShell;
 
 /* The covers' edges that a shell has then, in those of their cells. */
@@ -36,8 +44,9 @@ SmCode ref_shell_build(const RefChart *chart, const RefShellOptions *options, Re
                        SmError *error);
 void ref_shell_free(RefShell *shell);
 
-/* The shape functions and the middle surface at a point of the rectangle, between cracks as samples
- * have them; false where functions are not defined. */
+/* The shape functions, and the middle surface, at a point of the rectangle, between cracks as
+ * samples have them; 0 and false where functions are not defined. */
+int ref_shell_shape(const RefShell *shell, const double theta[3], RefShape *shape);
 bool ref_shell_at(const RefShell *shell, const double theta[3], RefShape *shape, RefFrame *frame);
 
 /* Appends a row: how far the normal leans along `direction` (of unit length) where functions and
