@@ -220,6 +220,8 @@ RefMeshlessOptions bench_meshless_options(const BenchScene *scene, const BenchBo
     options.given = body->given;
     options.stored = body->stored;
     options.material.young /= scene->metre;
+    options.strength /= scene->metre;
+    options.pressure /= scene->metre;
     options.material.density /= scene->metre * scene->metre * scene->metre;
     return options;
 }

@@ -44,7 +44,13 @@ struct RefMeshlessOptions {
     RefMeshlessBasis basis; /* of the shape functions (meshless eq. 11); covers of the quadratic one
                              * are twice as wide */
     double thickness;       /* of a shell (shell_engine.h), mesh units; 0: REF_SHELL_THIN */
-    RefMaterial material;   /* mesh units, kg, s */
+    double covers;    /* of a shell with linear functions: how wide covers are, in edges of their
+                       * cells; 0: quadratic functions of covers six edges wide */
+    double strength;  /* of a shell that breaks, Pa as `material` has it; 0: it does not */
+    double branching; /* times the strength from which on a crack goes on in two; 0: never */
+    double pressure;  /* inside a closed shell, along its normals at rest, for */
+    double pulse;     /* s from the beginning */
+    RefMaterial material;     /* mesh units, kg, s */
     double stiffness_damping; /* b of Rayleigh's a + b lambda, s; a loses the share params->damping
                                * of the speed in a step */
 };

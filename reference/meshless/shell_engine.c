@@ -29,6 +29,8 @@ struct SmEngine {
     double (*before)[3]; /* [count] in the skin's order, a step ago */
     SmHandles handles;
     Held *held; /* [handles.count] */
+    double pressure, pulse, time;
+    double outwards; /* 1 or -1: the way normals look */
 };
 
 #define CONST(array) ((const double(*)[3])(array))
@@ -37,6 +39,8 @@ static void shell_destroy(SmEngine *engine)
 {
     if (!engine) return;
     ref_skin_free(&engine->body.skin);
+    if (engine->body.breaking) ref_breaking_free(engine->body.breaking);
+    free(engine->body.breaking);
     ref_sheet_free(&engine->body.sheet);
     ref_surface_map_free(&engine->body.map);
     sm_handles_free(&engine->handles);
@@ -65,6 +69,25 @@ static SmCode map_surface(const RefMeshlessOptions *options, SmEngine *engine, S
                   : ref_surface_map_create(mesh, "the mesh", &engine->body.map, error);
 }
 
+/* Cells are split where a crack takes more than a quarter of a cover, once. */
+static SmCode make_breaking(const RefMeshlessOptions *options, SmEngine *engine, SmError *error)
+{
+    RefCrackedOptions cracked = {.least_share = 0.75, .most_splits = 1};
+    RefFractureOptions fracture = {
+        .strength = options->strength, .branching = options->branching, .most_starts = 4};
+    engine->pressure = options->pressure;
+    engine->pulse = options->pulse;
+    if (!(options->strength > 0)) return SM_OK;
+    engine->body.breaking = sm_alloc(1, sizeof *engine->body.breaking);
+    return ref_breaking_create(&engine->body.sheet, &cracked, &fracture, engine->body.breaking,
+                               error);
+}
+
+static bool again(const void *cracked, long cell)
+{
+    return ref_cracked_again(cracked, cell);
+}
+
 static SmCode make_sheet(const SmEngineParams *params, SmEngine *engine, SmError *error)
 {
     const RefMeshlessOptions *options = params->meshless;
@@ -74,7 +97,8 @@ static SmCode make_sheet(const SmEngineParams *params, SmEngine *engine, SmError
     RefSheetOptions sheet = {
         .shell = {.across = 1,
                   .nodes = options->nodes > 0 ? options->nodes : REF_SHELL_NODES,
-                  .basis = REF_MLS_PLANE_QUADRATIC,
+                  .basis = options->covers > 0 ? REF_MLS_PLANE_LINEAR : REF_MLS_PLANE_QUADRATIC,
+                  .eta = options->covers,
                   .thickness = options->thickness > 0 ? options->thickness
                                                       : REF_SHELL_THIN * sm_box_longest(&box),
                   .material = options->material},
@@ -84,8 +108,24 @@ static SmCode make_sheet(const SmEngineParams *params, SmEngine *engine, SmError
     memcpy(sheet.gravity, params->gravity, sizeof sheet.gravity);
     double start = sm_now();
     code = ref_sheet_create(&engine->body.map.chart, &sheet, &engine->body.sheet, error);
+    if (code == SM_OK) code = make_breaking(options, engine, error);
     engine->body.matrix_seconds = sm_now() - start;
     return code;
+}
+
+/* Whether normals look out of a closed surface: by the volume that places enclose with them. */
+static double outwards(const RefWarp *warp)
+{
+    double volume = 0;
+    for (long n = 0; n < warp->nodes; n++)
+        volume += warp->mass[n] * sm_dot(warp->X[n], warp->rest_normal[n]);
+    double middle[3] = {0}, side[3] = {0};
+    for (long n = 0; n < warp->nodes; n++)
+        for (int d = 0; d < 3; d++) {
+            middle[d] += warp->mass[n] * warp->X[n][d];
+            side[d] += warp->mass[n] * warp->rest_normal[n][d];
+        }
+    return volume < sm_dot(middle, side) ? -1 : 1;
 }
 
 static void make_particles(SmEngine *engine)
@@ -105,6 +145,7 @@ static void make_particles(SmEngine *engine)
         for (int e = M->start[c]; e < M->start[c + 1]; e++)
             mass += (M->row[e] == c ? 1 : 2) * M->value[e];
     engine->mass = mass / (double)engine->count;
+    engine->outwards = outwards(&body->sheet.warp);
     carry(engine);
     memcpy(engine->before, body->carried, count * sizeof *engine->before);
     body->skin_seconds = sm_now() - start;
@@ -127,10 +168,59 @@ static SmCode shell_create(const SmVoxels *voxels, const SmEngineParams *params,
     return SM_OK;
 }
 
+/* The pressure's push of one step: at a place of a cell along the normal there, over its area. */
+static void blow(SmEngine *engine)
+{
+    RefSheet *sheet = &engine->body.sheet;
+    const RefWarp *warp = &sheet->warp;
+    RefShape shape = ref_shape_create(&sheet->shell.nodes);
+    for (long c = 0, leaf = 0; c < sheet->shell.tree.count; c++) {
+        const RefCell *cell = sheet->shell.tree.cell + c;
+        double middle[2], edge[2];
+        if (cell->child >= 0) continue;
+        ref_quadtree_cell(&sheet->shell.tree, cell, middle, edge);
+        for (int p = 0; p < REF_WARP_PLACES; p++) {
+            const RefWarpPlace *place = warp->place + REF_WARP_PLACES * leaf + p;
+            double theta[3];
+            ref_warp_place_at(middle, edge, p, theta);
+            ref_shell_shape(&sheet->shell, theta, &shape);
+            for (int n = 0; n < shape.count; n++)
+                for (int d = 0; d < 3; d++)
+                    sheet->impulse[shape.node[n]][d] += engine->pressure * sheet->options.h *
+                                                        place->area * shape.value[n] *
+                                                        place->normal[d] * engine->outwards;
+        }
+        leaf++;
+    }
+    sheet->pushed = true;
+    ref_shape_free(&shape);
+}
+
+static void bind(SmEngine *engine);
+
+/* What follows where cracks have changed. */
+static void follow_cracks(SmEngine *engine)
+{
+    RefShellBody *body = &engine->body;
+    double start = sm_now();
+    ref_foot_renew(&body->sheet.shell, &body->sheet.warp, (const double(*)[2])body->map.theta,
+                   CONST(engine->rest), again, &body->breaking->cracked, &body->skin, &body->loose);
+    body->carry_seconds = sm_now() - start;
+    if (engine->handles.count) bind(engine);
+}
+
 static void shell_step(SmEngine *engine, SmLaps *laps)
 {
     RefShellBody *body = &engine->body;
-    ref_sheet_step(&body->sheet);
+    bool changed = false;
+    body->carry_seconds = 0;
+    if (engine->pressure != 0 && engine->time < engine->pulse) blow(engine);
+    engine->time += body->sheet.options.h;
+    if (body->breaking && !body->broke)
+        body->broke = ref_breaking_step(body->breaking, &changed, NULL) != SM_OK;
+    else
+        ref_sheet_step(&body->sheet);
+    if (changed && !body->broke) follow_cracks(engine);
     sm_lap(laps, SM_SHAPE_MATCHING);
     double(*now)[3] = engine->before;
     engine->before = body->carried;

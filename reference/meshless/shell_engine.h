@@ -7,6 +7,9 @@
  * that were given, carried; the lattice plays no part; w, summation, polar and layout mean nothing.
  * create() refuses what the meshless engine refuses. Its state is get_state()'s, and set() is NULL.
  *
+ * With a strength it cracks (shell/breaking.h); its points then move with what is on their side.
+ * A pressure inside pushes it apart along its normals, as it is at rest, for the first seconds.
+ *
  * A handle holds the surface at some of its particles, apart from each other by a cell at least,
  * and turns its tangents in their middle; one whose particles are all in a line holds places alone.
  */
@@ -15,7 +18,7 @@
 
 #include "engine.h"
 #include "map/surface_map.h"
-#include "shell/sheet.h"
+#include "shell/breaking.h"
 
 /* Thickness where none is given: this share of the mesh's longest extent. */
 #define REF_SHELL_THIN 0.01
@@ -28,6 +31,9 @@ extern const SmEngineType ref_shell_engine;
 typedef struct {
     RefSurfaceMap map;
     RefSheet sheet;
+    RefBreaking *breaking; /* NULL: it does not break */
+    bool broke;            /* a crack could not be followed: the shell goes on as it is */
+    double carry_seconds;  /* of the last step: points' weights where cracks changed */
     RefSkin skin;
     double (*carried)[3]; /* [skin.count] the points now, in the skin's order */
     long loose;           /* points that too few nodes cover */

@@ -53,7 +53,7 @@ static void note_place(const RefFrame *frame, double area, RefWarpPlace *place)
 }
 
 /* The middles of a cell's quarters, where the shell was integrated, too: covers reach them. */
-static void place_at(const double middle[2], const double edge[2], int p, double theta[3])
+void ref_warp_place_at(const double middle[2], const double edge[2], int p, double theta[3])
 {
     for (int d = 0; d < 2; d++) theta[d] = middle[d] + ((p >> d & 1) - 0.5) * edge[d] / 2;
     theta[2] = 0;
@@ -102,7 +102,7 @@ static void make_cells(const RefShell *shell, RefWarp *warp)
         warp->start[warp->cells + 1] = warp->start[warp->cells];
         for (int p = 0; p < PLACES; p++) {
             RefFrame frame;
-            place_at(middle, edge, p, theta);
+            ref_warp_place_at(middle, edge, p, theta);
             if (!ref_shell_at(shell, theta, &shape, &frame) || !bears(shell, theta, &frame))
                 continue;
             note_place(&frame, edge[0] * edge[1] / PLACES, warp->place + PLACES * warp->cells + p);
@@ -129,7 +129,8 @@ static void make_normals(const RefShell *shell, RefWarp *warp)
         if (!ref_shell_at(shell, theta, &shape, &frame)) {
             int cell = ref_quadtree_at(&shell->tree, theta);
             ref_quadtree_cell(&shell->tree, shell->tree.cell + cell, middle, edge);
-            place_at(middle, edge, (theta[0] > middle[0]) + 2 * (theta[1] > middle[1]), theta);
+            ref_warp_place_at(middle, edge, (theta[0] > middle[0]) + 2 * (theta[1] > middle[1]),
+                              theta);
             if (!ref_shell_at(shell, theta, &shape, &frame)) frame = (RefFrame){.area = 0};
         }
         long end = warp->near[n] + shape.count;
@@ -145,38 +146,39 @@ static void make_normals(const RefShell *shell, RefWarp *warp)
     ref_shape_free(&shape);
 }
 
-/* int g^kl phi_I,k phi_J,l over the places. */
-static void make_laplacian(RefWarp *warp)
+/* int g^kl phi_I,k phi_J,l over the places: of pairs that have mass together, as integration points
+ * are there, too. */
+static void make_laplacian(const RefShell *shell, RefWarp *warp)
 {
-    RefPairs pairs = ref_pairs_begin(warp->nodes);
-    int *sorted = sm_alloc((size_t)warp->nodes, sizeof *sorted);
-    for (long c = 0; c < warp->cells; c++) {
-        int count = (int)(warp->start[c + 1] - warp->start[c]);
-        memcpy(sorted, warp->node + warp->start[c], (size_t)count * sizeof *sorted);
-        sm_sort_ints(sorted, count);
-        ref_pairs_meet(&pairs, count, sorted);
-    }
-    ref_pairs_end(&pairs);
+    const RefSparse *M = &shell->matrices.mass;
+    size_t nodes = (size_t)warp->nodes, entries = (size_t)M->start[nodes];
+    RefSparse *L = &warp->laplacian.stiffness;
+    int *at = sm_alloc(nodes, sizeof *at); /* of a column's rows in L */
+    *L = (RefSparse){.columns = M->columns,
+                     .start = sm_alloc(nodes + 1, sizeof *L->start),
+                     .row = sm_alloc(entries, sizeof *L->row),
+                     .value = sm_alloc(entries, sizeof *L->value)};
+    memcpy(L->start, M->start, (nodes + 1) * sizeof *L->start);
+    memcpy(L->row, M->row, entries * sizeof *L->row);
     for (long c = 0; c < warp->cells; c++)
-        for (long e = warp->start[c]; e < warp->start[c + 1]; e++)
+        for (long e = warp->start[c]; e < warp->start[c + 1]; e++) {
+            int i = warp->node[e];
+            for (int k = L->start[i]; k < L->start[i + 1]; k++) at[L->row[k]] = k;
             for (long f = warp->start[c]; f < warp->start[c + 1]; f++) {
-                int i = warp->node[e], j = warp->node[f];
-                if (i > j) continue;
-                double *sum = pairs.mass + ref_pairs_at(&pairs, i, j);
+                if (warp->node[f] < i) continue;
+                double sum = 0;
                 for (int p = 0; p < PLACES; p++) {
                     const double *q = warp->place[PLACES * c + p].metric;
                     const double *a = warp->slope[e] + 2 * p, *b = warp->slope[f] + 2 * p;
-                    *sum += q[0] * a[0] * b[0] + q[1] * a[1] * b[1] +
-                            q[2] * (a[0] * b[1] + a[1] * b[0]);
+                    sum += q[0] * a[0] * b[0] + q[1] * a[1] * b[1] +
+                           q[2] * (a[0] * b[1] + a[1] * b[0]);
                 }
+                int k = at[warp->node[f]];
+                bool pair = k >= L->start[i] && k < L->start[i + 1] && L->row[k] == warp->node[f];
+                if (pair) L->value[k] += sum;
             }
-    RefMatrices sums;
-    ref_pairs_matrices(&pairs, 1, &sums);
-    warp->laplacian.stiffness = sums.mass;
-    sums.mass = (RefSparse){0};
-    ref_matrices_free(&sums);
-    ref_pairs_free(&pairs);
-    free(sorted);
+        }
+    free(at);
 }
 
 /* What hangs together, by the mass of pairs, and the nodes' shares of it. */
@@ -226,7 +228,7 @@ SmCode ref_warp_create(const RefShell *shell, RefWarp *warp, SmError *error)
     warp->sum = sm_alloc(nodes, sizeof *warp->sum);
     make_cells(shell, warp);
     make_normals(shell, warp);
-    make_laplacian(warp);
+    make_laplacian(shell, warp);
     share_mass(shell, warp);
     warp->cut = shell->nodes.cut.pass;
     if (warp->cut) soften(warp);

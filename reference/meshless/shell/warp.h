@@ -66,6 +66,9 @@ typedef struct {
     double (*all)[3];                /* [pieces] */
 } RefWarp;
 
+/* The parameters of a cell's place number p: the middles of its quarters. */
+void ref_warp_place_at(const double middle[2], const double edge[2], int p, double theta[3]);
+
 /* Of a shell at rest that nothing holds. The caller frees. Errors: solver.h's. */
 SmCode ref_warp_create(const RefShell *shell, RefWarp *warp, SmError *error);
 void ref_warp_free(RefWarp *warp);
