@@ -28,22 +28,12 @@ static double length_of(const double a[2])
 
 void ref_cracks_create(const RefChart *chart, double margin, RefCracks *cracks)
 {
-    *cracks = (RefCracks){.chart = chart, .margin = margin};
-    double longer = fmax(chart->high[0] - chart->low[0], chart->high[1] - chart->low[1]);
-    cracks->bin = fmax(margin / 2, longer / 256);
-    for (int d = 0; d < 2; d++) {
-        cracks->corner[d] = chart->low[d];
-        cracks->size[d] = (int)((chart->high[d] - chart->low[d]) / cracks->bin) + 1;
-    }
-    long bins = (long)cracks->size[0] * cracks->size[1];
-    sm_csr_adopt(&cracks->near, 0, sm_alloc(1, sizeof(long)), NULL, NULL, 0);
-    sm_csr_grow(&cracks->near, bins);
+    *cracks = (RefCracks){.chart = chart, .margin = margin, .low = {1, 1}};
 }
 
 void ref_cracks_free(RefCracks *cracks)
 {
-    sm_csr_free(&cracks->near);
-    sm_free_all(cracks->piece, cracks->arm);
+    sm_free_all(cracks->near, cracks->piece, cracks->arm);
     *cracks = (RefCracks){.chart = NULL};
 }
 
@@ -53,18 +43,6 @@ int ref_cracks_start(RefCracks *cracks, const double at[2], int parent)
     cracks->arm[cracks->arms] =
         (RefCrackArm){.tip = {at[0], at[1]}, .last = -1, .parent = parent, .open = true};
     return (int)cracks->arms++;
-}
-
-/* The bins that a box touches, within `margin`. */
-static void bins_of(const RefCracks *cracks, const double low[2], const double high[2],
-                    double margin, int first[2], int last[2])
-{
-    for (int d = 0; d < 2; d++) {
-        double from = (low[d] - margin - cracks->corner[d]) / cracks->bin;
-        double to = (high[d] + margin - cracks->corner[d]) / cracks->bin;
-        first[d] = (int)fmin(fmax(floor(from), 0), cracks->size[d] - 1);
-        last[d] = (int)fmin(fmax(floor(to), 0), cracks->size[d] - 1);
-    }
 }
 
 static void box_of(const RefCrackPiece *piece, double low[2], double high[2])
@@ -83,15 +61,9 @@ static void add_piece(RefCracks *cracks, int arm, const double end[2][2])
                            .previous = of->last,
                            .born = cracks->now,
                            .changed = cracks->now};
-    double low[2], high[2];
-    int first[2], last[2];
     memcpy(piece.end, end, sizeof piece.end);
-    box_of(&piece, low, high);
-    bins_of(cracks, low, high, cracks->margin, first, last);
     of->last = (int)cracks->pieces;
-    for (int y = first[1]; y <= last[1]; y++)
-        for (int x = first[0]; x <= last[0]; x++)
-            sm_csr_add(&cracks->near, (long)y * cracks->size[0] + x, of->last, NULL);
+    cracks->low[0] = INFINITY; /* what was looked up is so no more */
     sm_make_room(cracks->piece, cracks->piece_room, cracks->pieces + 1);
     cracks->piece[cracks->pieces++] = piece;
 }
@@ -119,14 +91,33 @@ static void add_pieces(RefCracks *cracks, int arm, const double end[2][2])
     }
 }
 
-/* The pieces that come within the margin of x. */
-static const int *near(const RefCracks *cracks, const double x[2], int *count)
+/* Looks up the pieces that touch the box of two places, and for the next such question those of a
+ * box about them that is five times as wide. */
+static const int *among(const RefCracks *cracks, const double a[2], const double b[2], int *count)
 {
-    int first[2], last[2];
-    bins_of(cracks, x, x, 0, first, last);
-    long bin = (long)first[1] * cracks->size[0] + first[0];
-    *count = (int)(cracks->near.end[bin] - cracks->near.first[bin]);
-    return cracks->near.item + cracks->near.first[bin];
+    RefCracks *look = (RefCracks *)cracks;
+    bool inside = true;
+    for (int d = 0; d < 2; d++)
+        inside = inside && fmin(a[d], b[d]) >= look->low[d] && fmax(a[d], b[d]) <= look->high[d];
+    if (!inside) {
+        double far = 2 * fmax(fabs(a[0] - b[0]), fabs(a[1] - b[1]));
+        look->near_count = 0;
+        for (int d = 0; d < 2; d++) {
+            look->low[d] = fmin(a[d], b[d]) - far;
+            look->high[d] = fmax(a[d], b[d]) + far;
+        }
+        for (long p = 0; p < look->pieces; p++) {
+            double low[2], high[2];
+            box_of(look->piece + p, low, high);
+            if (low[0] > look->high[0] || high[0] < look->low[0] || low[1] > look->high[1] ||
+                high[1] < look->low[1])
+                continue;
+            sm_make_room(look->near, look->near_room, look->near_count + 1);
+            look->near[look->near_count++] = (int)p;
+        }
+    }
+    *count = (int)look->near_count;
+    return look->near;
 }
 
 /* Moves the tip on: what is ahead of the arm's pieces grows by `more`. */
@@ -178,7 +169,7 @@ static bool first_meeting(const RefCracks *cracks, const double tip[2], const do
 {
     int count;
     bool any = false;
-    const int *member = near(cracks, tip, &count);
+    const int *member = among(cracks, tip, to, &count);
     for (int n = 0; n < count; n++) {
         const RefCrackPiece *piece = cracks->piece + member[n];
         double there;
@@ -288,7 +279,7 @@ static bool pass(const RefCracks *cracks, bool earlier, const double x[3], const
 {
     static const double whole[6] = {1};
     int count;
-    const int *member = near(cracks, x, &count);
+    const int *member = among(cracks, x, from, &count);
     memcpy(part, whole, sizeof whole);
     for (int n = 0; n < count; n++) {
         const RefCrackPiece *piece = cracks->piece + member[n];
@@ -316,7 +307,7 @@ bool ref_cracks_changed(const RefCracks *cracks, const double x[2], const double
                         double reach)
 {
     int count;
-    const int *member = near(cracks, x, &count);
+    const int *member = among(cracks, x, from, &count);
     for (int n = 0; n < count; n++) {
         const RefCrackPiece *piece = cracks->piece + member[n];
         if (piece->changed != cracks->now || !crosses(piece, x, from)) continue;
@@ -328,7 +319,7 @@ bool ref_cracks_changed(const RefCracks *cracks, const double x[2], const double
 bool ref_cracks_part(const RefCracks *cracks, const double x[2], const double from[2])
 {
     int count;
-    const int *member = near(cracks, x, &count);
+    const int *member = among(cracks, x, from, &count);
     for (int n = 0; n < count; n++)
         if (crosses(cracks->piece + member[n], x, from)) return true;
     return false;
@@ -336,14 +327,13 @@ bool ref_cracks_part(const RefCracks *cracks, const double x[2], const double fr
 
 bool ref_cracks_stir(const RefCracks *cracks, const double low[2], const double high[2])
 {
-    int first[2], last[2];
-    bins_of(cracks, low, high, 0, first, last);
-    for (int y = first[1]; y <= last[1]; y++)
-        for (int x = first[0]; x <= last[0]; x++) {
-            long bin = (long)y * cracks->size[0] + x;
-            for (long e = cracks->near.first[bin]; e < cracks->near.end[bin]; e++)
-                if (cracks->piece[cracks->near.item[e]].changed == cracks->now) return true;
-        }
+    for (long p = 0; p < cracks->pieces; p++) {
+        double from[2], to[2];
+        if (cracks->piece[p].changed != cracks->now) continue;
+        box_of(cracks->piece + p, from, to);
+        if (from[0] <= high[0] && to[0] >= low[0] && from[1] <= high[1] && to[1] >= low[1])
+            return true;
+    }
     return false;
 }
 
@@ -361,15 +351,12 @@ void ref_cracks_settle(RefCracks *cracks)
     for (long p = 0; p < cracks->pieces; p++) cracks->piece[p].before = cracks->piece[p].ahead;
 }
 
-double ref_cracks_distance(const RefCracks *cracks, const double x[2], int skip)
+double ref_cracks_distance(const RefCracks *cracks, const double x[2], double far)
 {
-    int count;
-    const int *member = near(cracks, x, &count);
-    double least = cracks->margin;
-    for (int n = 0; n < count; n++) {
-        const RefCrackPiece *piece = cracks->piece + member[n];
+    double least = far;
+    for (long p = 0; p < cracks->pieces; p++) {
+        const RefCrackPiece *piece = cracks->piece + p;
         double along[2], to[2];
-        if (piece->arm == skip) continue;
         way_from(piece->end[0], piece->end[1], along);
         way_from(piece->end[0], x, to);
         double square = along[0] * along[0] + along[1] * along[1];

@@ -12,7 +12,6 @@
 #ifndef REF_CRACK_H
 #define REF_CRACK_H
 
-#include "../../../lib/csr.h"
 #include "chart.h"
 
 /* A straight piece of an arm, or an image of one beyond a seam. */
@@ -37,12 +36,12 @@ typedef struct {
     const RefChart *chart; /* the caller's */
     double margin;         /* the largest reach of a cover */
     long pieces, piece_room, arms, arm_room;
-    RefCrackPiece *piece;  /* [pieces] */
-    RefCrackArm *arm;      /* [arms] */
-    int now;               /* counts settlements */
-    double corner[2], bin; /* private: bins of the pieces within the margin */
-    int size[2];
-    SmCsr near;
+    RefCrackPiece *piece;   /* [pieces] */
+    RefCrackArm *arm;       /* [arms] */
+    int now;                /* counts settlements */
+    double low[2], high[2]; /* private: a box, and all pieces whose boxes touch it */
+    long near_count, near_room;
+    int *near;
 } RefCracks;
 
 /* No cracks. No cover's reach is above `margin`. The caller frees. */
@@ -56,7 +55,7 @@ int ref_cracks_start(RefCracks *cracks, const double at[2], int parent);
 typedef enum { REF_CRACK_GOES_ON, REF_CRACK_MEETS_RIM, REF_CRACK_MEETS_CRACK } RefCrackFate;
 
 /* Adds a piece from an arm's tip straight to `to`, which may be beyond a seam. Where it meets
- * another crack or a rim, it stops, and the arm is ended. O(pieces near). */
+ * another crack or a rim, it stops, and the arm is ended. O(pieces). */
 RefCrackFate ref_cracks_grow(RefCracks *cracks, int arm, const double to[2]);
 
 /* Whether an arm would meet another crack or a rim if it went on straight for `far`. */
@@ -65,8 +64,9 @@ bool ref_cracks_end_ahead(const RefCracks *cracks, int arm, double far);
 /* Ends an arm: nothing gets across any more near where its tip was. */
 void ref_cracks_end(RefCracks *cracks, int arm);
 
-/* What gets from `from` to x of a weight of this reach: RefCut's pass() for nodes.h. x is in the
- * rectangle. O(pieces within the margin of x). */
+/* What gets from `from` to x of a weight of this reach: RefCut's pass() for nodes.h. Questions
+ * about places that are near to each other are quick one after the other: pieces near them are
+ * looked up once. Not for several threads at a time. O(pieces near). */
 bool ref_cracks_pass(const void *cracks, const double x[3], const double from[3], double reach,
                      double part[6]);
 
@@ -81,13 +81,13 @@ bool ref_cracks_changed(const RefCracks *cracks, const double x[2], const double
 /* Whether a crack is between two places, the first in the rectangle. */
 bool ref_cracks_part(const RefCracks *cracks, const double x[2], const double from[2]);
 
-/* Whether there may be such changes for any x of a box, from anywhere within the margin. */
+/* Whether there is such a change of a piece that touches a box. */
 bool ref_cracks_stir(const RefCracks *cracks, const double low[2], const double high[2]);
 
 /* All changes become what was before. O(pieces). */
 void ref_cracks_settle(RefCracks *cracks);
 
-/* How far the nearest piece is, at most the margin; `skip` is an arm that does not count, or -1. */
-double ref_cracks_distance(const RefCracks *cracks, const double x[2], int skip);
+/* How far the nearest piece is, at most `far`. */
+double ref_cracks_distance(const RefCracks *cracks, const double x[2], double far);
 
 #endif

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../../lib/csr.h"
 #include "../../../lib/vector.h"
 #include "field_transfer.h"
 
@@ -269,12 +270,16 @@ static long split_cells(RefCracked *cracked)
     RefQuadtree *tree = &cracked->shell->tree;
     long before = tree->count;
     for (long c = 0; c < tree->count; c++) {
-        double middle[2], edge[2];
+        double middle[2], edge[2], low[2], high[2], reach = cracked->cell[c].reach;
         long count = tree->count;
         if (!terminal(cracked, c) || cracked->cell[c].splits >= cracked->cracked.most_splits)
             continue;
         ref_quadtree_cell(tree, tree->cell + c, middle, edge);
-        if (c < before && !ref_cracks_stir(&cracked->cracks, middle, middle)) continue;
+        for (int d = 0; d < 2; d++) {
+            low[d] = middle[d] - reach;
+            high[d] = middle[d] + reach;
+        }
+        if (c < before && !ref_cracks_stir(&cracked->cracks, low, high)) continue;
         if (share_of(cracked, c) >= cracked->cracked.least_share) continue;
         if (ref_quadtree_split(tree, c)) inherit(cracked, count);
     }

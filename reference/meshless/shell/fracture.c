@@ -188,7 +188,7 @@ static int start_cracks(RefCracked *cracked, const RefFractureOptions *options,
         const RefFaceStress *at = stress + n;
         if (!(at->principal > options->strength)) break;
         double far = START_CELLS * edge_at(cracked, at->theta);
-        if (ref_cracks_distance(cracks, at->theta, -1) < fmin(far, cracks->margin)) continue;
+        if (ref_cracks_distance(cracks, at->theta, far) < far) continue;
         for (int side = -1; side <= 1; side += 2) {
             double way[2] = {side * at->along[0], side * at->along[1]};
             advance(cracked, ref_cracks_start(cracks, at->theta, -1), way, 0);
