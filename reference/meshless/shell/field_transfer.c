@@ -51,8 +51,10 @@ void ref_field_rest(const RefFieldPlace *old, const RefFieldPlace *new, double w
     ref_field_value(new, value[1]);
     strain_at(old, frames, strain[0]);
     strain_at(new, frames + 1, strain[1]);
-    if (!ref_thin_is_stiff(frames, weight, area)) memset(strain[0], 0, sizeof strain[0]);
-    for (int i = 0; i < 6; i++) strain[0][i] -= strain[1][i];
+    bool was_stiff = ref_thin_is_stiff(frames, weight, area);
+    double scale = frames[1].area / frames[0].area; /* strains count by the metric they are of */
+    for (int i = 0; i < 6; i++)
+        strain[0][i] = (was_stiff ? scale * strain[0][i] : 0) - strain[1][i];
     if (stiff) stress_of(frames + 1, strain[0], area, norm, stress);
     double mass = norm->mass_share * norm->material.density * norm->thickness * area;
     for (int n = 0; n < new->count; n++) {

@@ -6,9 +6,9 @@
 #include "../../../lib/vector.h"
 #include "../motion/frame_sums.h"
 
-/* Functions that leave a surface less than this share of its area are none that say how it bends:
- * its inverse metric would be too large. */
-static const double LEAST_AREA = 0.4;
+/* Functions that leave a surface less than this share of its area, or an inverse metric whose trace
+ * is larger than this (2 of a conformal one of the right area), are none that say how it bends. */
+static const double LEAST_AREA = 0.6, MOST_TRACE = 5;
 
 void ref_thin_law(const double g[3], double nu, double H[3][3])
 {
@@ -37,7 +37,8 @@ static void factor_of(const double g[3], double nu, double G[3][3])
 
 bool ref_thin_is_stiff(const RefFrame *frame, double weight, double area)
 {
-    return frame->area * weight > LEAST_AREA * area;
+    double trace = (frame->inverse[0] + frame->inverse[1]) * area;
+    return frame->area * weight > LEAST_AREA * area && trace < MOST_TRACE * weight;
 }
 
 void ref_thin_strains(const RefFrame *frame, const double part[6], double B[6][3])
