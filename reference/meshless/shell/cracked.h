@@ -76,6 +76,11 @@ typedef struct {
  * Returns whether nodes are others than before. */
 bool ref_cracked_update(RefCracked *cracked, RefCrackedFields *fields);
 
+/* The functions at a place as `eye` beside it sees it, which may be on the other side of a crack;
+ * false where no sample is seen. */
+bool ref_cracked_side(const RefCracked *cracked, const double theta[2], const double eye[2],
+                      RefShape *shape);
+
 /* Whether the last update took samples of a cell again, or of one that is part of it. */
 bool ref_cracked_again(const RefCracked *cracked, long cell);
 

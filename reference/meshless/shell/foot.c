@@ -96,14 +96,12 @@ static void find_foot(const double place[3][3], const double normal[3][3], const
     if (!(off < 1e-6 * height && beyond(o, edge, height) <= 1)) memcpy(o, first, sizeof first);
 }
 
-bool ref_foot_at(const RefShell *shell, const RefWarp *warp, const double theta[2],
+void ref_foot_of(const RefShell *shell, const RefWarp *warp, const double theta[2],
                  const double x[3], RefShape *shape, double *lift)
 {
     const RefQuadtree *tree = &shell->tree;
-    const double at[3] = {theta[0], theta[1]};
     double place[3][3], normal[3][3], o[3], middle[2], edge[2];
     *lift = 0;
-    if (!ref_shell_shape(shell, at, shape)) return false;
     sum_parts(warp, shape, place, normal);
     ref_quadtree_cell(tree, tree->cell + ref_quadtree_at(tree, theta), middle, edge);
     double length = sqrt(sqrt(sm_dot(place[1], place[1]) * sm_dot(place[2], place[2])));
@@ -112,6 +110,15 @@ bool ref_foot_at(const RefShell *shell, const RefWarp *warp, const double theta[
     *lift = o[2];
     for (int n = 0; n < shape->count; n++)
         shape->value[n] += o[0] * shape->gradient[n][0] + o[1] * shape->gradient[n][1];
+}
+
+bool ref_foot_at(const RefShell *shell, const RefWarp *warp, const double theta[2],
+                 const double x[3], RefShape *shape, double *lift)
+{
+    const double at[3] = {theta[0], theta[1]};
+    *lift = 0;
+    if (!ref_shell_shape(shell, at, shape)) return false;
+    ref_foot_of(shell, warp, theta, x, shape, lift);
     return true;
 }
 

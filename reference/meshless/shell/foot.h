@@ -27,4 +27,9 @@ void ref_foot_renew(const RefShell *shell, const RefWarp *warp, const double (*t
 bool ref_foot_at(const RefShell *shell, const RefWarp *warp, const double theta[2],
                  const double x[3], RefShape *shape, double *lift);
 
+/* The same of functions that were taken already, at theta or from one side of it: `shape` becomes
+ * those that move x. */
+void ref_foot_of(const RefShell *shell, const RefWarp *warp, const double theta[2],
+                 const double x[3], RefShape *shape, double *lift);
+
 #endif

@@ -1,0 +1,228 @@
+#include "torn_surface.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../../lib/vector.h"
+
+#define CONST(array) ((const double(*)[3])(array))
+
+void ref_torn_free(RefTornSurface *torn)
+{
+    sm_free_all(torn->beside, torn->middle, torn->corner, torn->open, torn->of, torn->eye);
+    *torn = (RefTornSurface){.vertices = 0};
+}
+
+/* Of a place and what it is beyond seams, the one that is nearest to `near`. */
+static void nearest_image(const RefChart *chart, const double theta[2], const double near[2],
+                          double image[2])
+{
+    double least = hypot(theta[0] - near[0], theta[1] - near[1]);
+    memcpy(image, theta, 2 * sizeof *image);
+    for (int s = 0; s < chart->seams; s++) {
+        double there[2];
+        ref_seam_cross(chart->seam + s, theta, there);
+        double far = hypot(there[0] - near[0], there[1] - near[1]);
+        if (far >= least) continue;
+        least = far;
+        memcpy(image, there, sizeof there);
+    }
+}
+
+typedef struct {
+    int low, high;
+    long side; /* three times the triangle, and the corner that the edge goes from */
+} Edge;
+
+static int by_ends(const void *a, const void *b)
+{
+    const Edge *p = a, *q = b;
+    if (p->low != q->low) return p->low < q->low ? -1 : 1;
+    if (p->high != q->high) return p->high < q->high ? -1 : 1;
+    return (p->side > q->side) - (p->side < q->side);
+}
+
+/* Edges that two triangles have join them; those of more are left open. */
+static void join(RefTornSurface *torn)
+{
+    long edges = 3 * torn->triangles;
+    Edge *edge = sm_alloc((size_t)edges, sizeof *edge);
+    for (long e = 0; e < edges; e++) {
+        int a = torn->whole[e / 3][e % 3], b = torn->whole[e / 3][(e + 1) % 3];
+        edge[e] = (Edge){a < b ? a : b, a < b ? b : a, e};
+        torn->beside[e / 3][e % 3] = -1;
+    }
+    qsort(edge, (size_t)edges, sizeof *edge, by_ends);
+    for (long e = 0, end; e < edges; e = end) {
+        for (end = e + 1;
+             end < edges && edge[end].low == edge[e].low && edge[end].high == edge[e].high;)
+            end++;
+        if (end - e != 2) continue;
+        long p = edge[e].side, q = edge[e + 1].side;
+        torn->beside[p / 3][p % 3] = (int)(q / 3);
+        torn->beside[q / 3][q % 3] = (int)(p / 3);
+    }
+    free(edge);
+}
+
+void ref_torn_create(const RefChart *chart, long vertices, long triangles, const int (*triangle)[3],
+                     const double (*theta)[2], const double (*rest)[3], RefTornSurface *torn)
+{
+    size_t count = (size_t)triangles;
+    *torn = (RefTornSurface){.vertices = vertices,
+                             .triangles = triangles,
+                             .whole = triangle,
+                             .theta = theta,
+                             .rest = rest,
+                             .beside = sm_alloc(count, sizeof *torn->beside),
+                             .middle = sm_alloc(count, sizeof *torn->middle),
+                             .corner = sm_alloc(count, sizeof *torn->corner),
+                             .open = sm_alloc(count, sizeof *torn->open)};
+    join(torn);
+    for (long t = 0; t < triangles; t++) {
+        const double *first = theta[triangle[t][0]];
+        memcpy(torn->corner[t], triangle[t], sizeof *triangle);
+        for (int k = 0; k < 3; k++) {
+            double image[2];
+            nearest_image(chart, theta[triangle[t][k]], first, image);
+            for (int d = 0; d < 2; d++) torn->middle[t][d] += image[d] / 3;
+            torn->open[t][k] = torn->beside[t][k] < 0;
+            torn->open_edges += torn->open[t][k];
+        }
+        ref_chart_enter(chart, torn->middle[t]);
+    }
+}
+
+/* Whether a crack is between a triangle's middle and another place. */
+static bool parted(const RefCracked *cracked, const double middle[2], const double place[2])
+{
+    double image[2];
+    nearest_image(cracked->cracks.chart, place, middle, image);
+    return ref_cracks_part(&cracked->cracks, middle, image);
+}
+
+static void part_edges(RefTornSurface *torn, const RefCracked *cracked)
+{
+    torn->open_edges = 0;
+    for (long t = 0; t < torn->triangles; t++)
+        for (int k = 0; k < 3; k++) {
+            int other = torn->beside[t][k];
+            const double *from = torn->middle[t < other ? t : other], *to = torn->middle[t];
+            if (other > t) to = torn->middle[other];
+            torn->open[t][k] = other < 0 || parted(cracked, from, to);
+            torn->open_edges += torn->open[t][k];
+        }
+}
+
+static int corner_of(const int triangle[3], int vertex)
+{
+    return triangle[0] == vertex ? 0 : triangle[1] == vertex ? 1 : 2;
+}
+
+static int add_copy(RefTornSurface *torn, int vertex, const double eye[2])
+{
+    sm_make_room(torn->of, torn->room, torn->copies + 1);
+    sm_make_room(torn->eye, torn->eye_room, torn->copies + 1);
+    torn->of[torn->copies] = vertex;
+    memcpy(torn->eye[torn->copies], eye, sizeof *torn->eye);
+    return (int)(torn->vertices + torn->copies++);
+}
+
+/* All triangles about a vertex that hang together with this one get the corner `as`, through edges
+ * that are not open, round one way and then the other. */
+static void spread(RefTornSurface *torn, long t, int vertex, int as, bool *done)
+{
+    for (int way = 0; way < 2; way++)
+        for (long at = t;;) {
+            int k = corner_of(torn->whole[at], vertex), side = way ? (k + 2) % 3 : k;
+            torn->corner[at][k] = as;
+            done[3 * at + k] = true;
+            long next = torn->beside[at][side];
+            if (torn->open[at][side] || done[3 * next + corner_of(torn->whole[next], vertex)])
+                break;
+            at = next;
+        }
+}
+
+/* First those that see their vertex itself, then copies for the others. */
+bool ref_torn_update(RefTornSurface *torn, const RefCracked *cracked)
+{
+    long before = torn->copies, open = torn->open_edges;
+    bool *done = sm_alloc(3 * (size_t)torn->triangles, sizeof *done);
+    bool *home = sm_alloc((size_t)torn->vertices, sizeof *home);
+    torn->copies = 0;
+    part_edges(torn, cracked);
+    for (int pass = 0; pass < 2; pass++)
+        for (long t = 0; t < torn->triangles; t++)
+            for (int k = 0; k < 3; k++) {
+                int v = torn->whole[t][k];
+                if (done[3 * t + k]) continue;
+                bool sees = !home[v] && !parted(cracked, torn->middle[t], torn->theta[v]);
+                if (pass == 0 && !sees) continue;
+                spread(torn, t, v, pass == 0 ? v : add_copy(torn, v, torn->middle[t]), done);
+                home[v] = true;
+            }
+    free(done);
+    free(home);
+    return torn->copies != before || torn->open_edges != open;
+}
+
+SmMesh ref_torn_mesh(const RefTornSurface *torn)
+{
+    int sheet = (int)(torn->vertices + torn->copies);
+    SmMesh mesh = sm_mesh_new(2 * (long)sheet, 2 * torn->triangles + 2 * torn->open_edges);
+    long next = 2 * torn->triangles;
+    for (long t = 0; t < torn->triangles; t++) {
+        const int *corner = torn->corner[t];
+        for (int k = 0; k < 3; k++) {
+            int a = corner[k], b = corner[(k + 1) % 3];
+            mesh.triangle[2 * t][k] = a;
+            mesh.triangle[2 * t + 1][2 - k] = sheet + a;
+            if (!torn->open[t][k]) continue;
+            const int wall[2][3] = {{b, a, sheet + a}, {b, sheet + a, sheet + b}};
+            memcpy(mesh.triangle[next], wall, sizeof wall);
+            next += 2;
+        }
+    }
+    return mesh;
+}
+
+/* Where a copy is. */
+static void place_copy(const RefTornSurface *torn, long copy, const RefCracked *cracked,
+                       const RefWarp *warp, RefShape *shape, double point[3])
+{
+    int v = torn->of[copy];
+    double lift;
+    memcpy(point, torn->rest[v], 3 * sizeof *point);
+    if (!ref_cracked_side(cracked, torn->theta[v], torn->eye[copy], shape)) return;
+    ref_foot_of(cracked->shell, warp, torn->theta[v], torn->rest[v], shape, &lift);
+    for (int n = 0; n < shape->count; n++)
+        for (int d = 0; d < 3; d++)
+            point[d] += shape->value[n] *
+                        (warp->moved[shape->node[n]][d] + lift * warp->turned[shape->node[n]][d]);
+}
+
+void ref_torn_place(const RefTornSurface *torn, const RefCracked *cracked, const RefWarp *warp,
+                    const double (*outer)[3], double thickness, double (*point)[3])
+{
+    long sheet = torn->vertices + torn->copies;
+    RefShape shape = ref_shape_create(&cracked->shell->nodes);
+    double(*inner)[3] = point + sheet;
+    memcpy(point, outer, (size_t)torn->vertices * sizeof *point);
+    for (long c = 0; c < torn->copies; c++)
+        place_copy(torn, c, cracked, warp, &shape, point[torn->vertices + c]);
+    memset(inner, 0, (size_t)sheet * sizeof *inner);
+    for (long t = 0; t < torn->triangles; t++) {
+        const int *k = torn->corner[t];
+        double normal[3];
+        sm_area_vector(point[k[0]], point[k[1]], point[k[2]], normal);
+        for (int n = 0; n < 3; n++)
+            for (int d = 0; d < 3; d++) inner[k[n]][d] += normal[d];
+    }
+    for (long n = 0; n < sheet; n++) {
+        sm_normalize(inner[n]);
+        for (int d = 0; d < 3; d++) inner[n][d] = point[n][d] - thickness * inner[n][d];
+    }
+    ref_shape_free(&shape);
+}
