@@ -18,7 +18,7 @@ static double strain_limit(const BenchRunner *runner)
 bool bench_group_changes(const BenchGroup *group)
 {
     const BenchScene *scene = group->runner.scene;
-    return group->touched || scene->cut_count > 0 || scene->view.level > 0 ||
+    return group->touched || group->skin.drawn || scene->cut_count > 0 || scene->view.level > 0 ||
            strain_limit(&group->runner) > 0;
 }
 
@@ -50,6 +50,7 @@ static void create_skin(BenchGroup *group)
                    cut_lattice || limit > 0 ? (const double(*)[3])runner->x0 : NULL, limit,
                    points ? (SmMesh){0} : surface, &group->skin);
     if (points) group->skin.surface = surface;
+    sm_skin_draw(&group->skin);
     if (cut_lattice && !(limit > 0)) group->body.cut = &group->skin.cut;
 }
 

@@ -45,7 +45,7 @@ typedef struct BenchCarrier {
     SmCode (*may_change)(SmEngine *engine, SmError *error);
 } BenchCarrier;
 
-extern const BenchCarrier bench_octree_carrier, bench_lattice_carrier;
+extern const BenchCarrier bench_octree_carrier, bench_lattice_carrier, bench_drawn_carrier;
 
 /* These `count` instances of the body at rest, as bench_runner_create(); and SM_INPUT where the
  * scene would change what its engine cannot. The group may not move. After an error nothing is to

@@ -32,6 +32,19 @@ static SmCode change_lattice(BenchGroup *group, double from, double to, SmError 
 
 const BenchCarrier bench_lattice_carrier = {change_lattice, NULL, NULL};
 
+/* ---- an engine that draws its surface */
+
+static SmCode change_drawn(BenchGroup *group, double from, double to, SmError *error)
+{
+    double start = sm_now();
+    (void)from, (void)to, (void)error;
+    sm_skin_draw(&group->skin);
+    group->last.follow_seconds = sm_now() - start;
+    return SM_OK;
+}
+
+const BenchCarrier bench_drawn_carrier = {change_drawn, NULL, NULL};
+
 /* ---- an octree, by leaf number: blades, touches and an eye */
 
 /* Splits what is near the cut's triangles from `first` on, as the scene's cuts in use want. */

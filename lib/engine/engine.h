@@ -13,6 +13,7 @@
 
 #include "../cut/cut.h"
 #include "../error.h"
+#include "../mesh/mesh.h"
 #include "../pieces.h"
 #include "../voxel/voxel.h"
 #include "boundary.h"
@@ -196,6 +197,14 @@ typedef struct {
     /* Members of particle p's region in rising order. Returns how many; writes at most `room`. NULL
      * of engines without regions, which have no goals to compare. */
     long (*region)(SmEngine *engine, long p, long *member, long room);
+
+    /* Of a body whose surface, as it is drawn, is not the mesh that its particles are the vertices
+     * of: where it has changed since the last call `surface` is freed and made anew, with places at
+     * rest; else false. surface_points() are where its vertices are, [vertex_count], and
+     * surface_particle() says which particle's side one is on. All three NULL of other engines. */
+    bool (*surface)(SmEngine *engine, SmMesh *surface);
+    void (*surface_points)(SmEngine *engine, double (*point)[3]);
+    int (*surface_particle)(const SmEngine *engine, long vertex);
 
     /* How the sum over particle p's region is made of sums (fastlsm section 3.1): of each member,
      * in region()'s order, the bar that it is in, and the plate that this is in; both numbered from

@@ -221,6 +221,7 @@ static void update(SmSkin *skin, long count, const int *node, long first)
 int sm_skin_carrier(const SmSkin *skin, long vertex)
 {
     if (skin->octree) return skin->carried.rows.item[skin->carried.rows.first[vertex]];
+    if (skin->drawn) return skin->type->surface_particle(skin->engine, vertex);
     if (skin->type->vertices) return (int)vertex;
     const float *weight = skin->embedding.weight[vertex];
     int most = 0;
@@ -287,12 +288,22 @@ void sm_skin_follow_cut(SmSkin *skin, long first)
 
 /* ---- reading */
 
-/* The surface's own vertices, and unit normals unless NULL. */
+bool sm_skin_draw(SmSkin *skin)
+{
+    bool changed = skin->type->surface && skin->type->surface(skin->engine, &skin->surface);
+    skin->drawn = skin->drawn || changed;
+    return changed;
+}
+
+/* The surface's own vertices, or those that the engine draws, and unit normals unless NULL. */
 static void take_vertices(const SmSkin *skin, const double (*node)[3], double (*point)[3],
                           double (*normal)[3])
 {
     size_t vertices = (size_t)skin->surface.vertex_count;
-    memcpy(point, node, vertices * sizeof *point);
+    if (skin->drawn)
+        skin->type->surface_points(skin->engine, point);
+    else
+        memcpy(point, node, vertices * sizeof *point);
     if (!normal) return;
     SmMesh now = skin->surface;
     now.position = point;

@@ -26,6 +26,7 @@ typedef struct {
     bool breaks;           /* its links break by strain, too: */
     long links;            /* as many were left when it was last looked, */
     SmTear tear;           /* and these */
+    bool drawn;            /* the engine makes the surface (engine.h, surface()) */
     bool incomplete;       /* a cut did not split the surface: it could not be done cleanly */
     /* scratch: nodes as the engine counts them; by leaf or particle number */
     double (*node)[3];
@@ -64,6 +65,9 @@ bool sm_skin_tear(SmSkin *skin);
 /* The same as sm_skin_follow() after a lattice has been torn or cut by the triangles of skin->cut
  * from number `first` on. */
 void sm_skin_follow_cut(SmSkin *skin, long first);
+
+/* The surface as the engine draws it now; false where it is what it was. */
+bool sm_skin_draw(SmSkin *skin);
 
 /* The surfaces of all instances, and unit normals unless NULL: [instances * vertices]. `node` are
  * places of what carries them, as the engine counts them; NULL: where these are now. */

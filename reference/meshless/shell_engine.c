@@ -28,7 +28,9 @@ struct SmEngine {
     double (*rest)[3];
     double (*before)[3]; /* [count] in the skin's order, a step ago */
     SmHandles handles;
-    Held *held; /* [handles.count] */
+    Held *held;         /* [handles.count] */
+    int (*triangle)[3]; /* the mesh's, of one that breaks */
+    bool drawn;         /* its surface was taken once */
     double pressure, pulse, time;
     double outwards; /* 1 or -1: the way normals look */
 };
@@ -39,13 +41,14 @@ static void shell_destroy(SmEngine *engine)
 {
     if (!engine) return;
     ref_skin_free(&engine->body.skin);
+    ref_torn_free(&engine->body.torn);
     if (engine->body.breaking) ref_breaking_free(engine->body.breaking);
     free(engine->body.breaking);
     ref_sheet_free(&engine->body.sheet);
     ref_surface_map_free(&engine->body.map);
     sm_handles_free(&engine->handles);
-    sm_free_all(engine->body.carried, engine->place, engine->rest, engine->before, engine->held,
-                engine);
+    sm_free_all(engine->triangle, engine->body.carried, engine->place, engine->rest, engine->before,
+                engine->held, engine);
 }
 
 static void carry(SmEngine *engine)
@@ -145,6 +148,14 @@ static void make_particles(SmEngine *engine)
         for (int e = M->start[c]; e < M->start[c + 1]; e++)
             mass += (M->row[e] == c ? 1 : 2) * M->value[e];
     engine->mass = mass / (double)engine->count;
+    if (body->breaking) {
+        engine->triangle = sm_alloc((size_t)mesh->triangle_count, sizeof *engine->triangle);
+        memcpy(engine->triangle, mesh->triangle,
+               (size_t)mesh->triangle_count * sizeof *engine->triangle);
+        ref_torn_create(&body->map.chart, engine->count, mesh->triangle_count,
+                        (const int(*)[3])engine->triangle, (const double(*)[2])body->map.theta,
+                        CONST(engine->rest), &body->torn);
+    }
     engine->outwards = outwards(&body->sheet.warp);
     carry(engine);
     memcpy(engine->before, body->carried, count * sizeof *engine->before);
@@ -363,6 +374,44 @@ static void shell_bound(SmEngine *engine, const SmBoundary *boundary)
     }
 }
 
+static void draw(SmEngine *engine, bool rest, double (*point)[3])
+{
+    RefShellBody *body = &engine->body;
+    double(*outer)[3] = sm_alloc((size_t)engine->count, sizeof *outer);
+    for (long p = 0; p < engine->count; p++)
+        memcpy(outer[p], rest ? engine->rest[p] : body->carried[engine->place[p]], sizeof *outer);
+    ref_torn_place(&body->torn, &body->breaking->cracked, rest ? NULL : &body->sheet.warp,
+                   CONST(outer), body->sheet.options.shell.thickness, point);
+    free(outer);
+}
+
+static bool shell_surface(SmEngine *engine, SmMesh *surface)
+{
+    RefShellBody *body = &engine->body;
+    if (!body->breaking) return false;
+    bool changed = ref_torn_update(&body->torn, &body->breaking->cracked);
+    if (engine->drawn && !changed) return false;
+    engine->drawn = true;
+    sm_mesh_free(surface);
+    *surface = ref_torn_mesh(&body->torn);
+    draw(engine, true, surface->position);
+    return true;
+}
+
+static void shell_surface_points(SmEngine *engine, double (*point)[3])
+{
+    draw(engine, false, point);
+    for (long n = 0; n < 2 * (engine->body.torn.vertices + engine->body.torn.copies); n++)
+        for (int d = 0; d < 3; d++) point[n][d] += engine->pose[d][3];
+}
+
+static int shell_surface_particle(const SmEngine *engine, long vertex)
+{
+    const RefTornSurface *torn = &engine->body.torn;
+    long outer = vertex % (torn->vertices + torn->copies);
+    return outer < torn->vertices ? (int)outer : torn->of[outer - torn->vertices];
+}
+
 static void shell_masses(SmEngine *engine, double *mass)
 {
     for (long p = 0; p < engine->count; p++) mass[p] = engine->mass;
@@ -402,5 +451,8 @@ const SmEngineType ref_shell_engine = {
     .get_state = shell_get_state,
     .set_state = shell_set_state,
     .masses = shell_masses,
+    .surface = shell_surface,
+    .surface_points = shell_surface_points,
+    .surface_particle = shell_surface_particle,
     .count = shell_count,
 };

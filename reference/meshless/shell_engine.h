@@ -19,6 +19,7 @@
 #include "engine.h"
 #include "map/surface_map.h"
 #include "shell/breaking.h"
+#include "shell/torn_surface.h"
 
 /* Thickness where none is given: this share of the mesh's longest extent. */
 #define REF_SHELL_THIN 0.01
@@ -32,6 +33,7 @@ typedef struct {
     RefSurfaceMap map;
     RefSheet sheet;
     RefBreaking *breaking; /* NULL: it does not break */
+    RefTornSurface torn;   /* what is drawn of one that does */
     bool broke;            /* a crack could not be followed: the shell goes on as it is */
     double carry_seconds;  /* of the last step: points' weights where cracks changed */
     RefSkin skin;

@@ -6,8 +6,6 @@
 
 #include "../../../lib/vector.h"
 
-#define CONST(array) ((const double(*)[3])(array))
-
 void ref_torn_free(RefTornSurface *torn)
 {
     sm_free_all(torn->beside, torn->middle, torn->corner, torn->open, torn->of, torn->eye);
@@ -195,7 +193,7 @@ static void place_copy(const RefTornSurface *torn, long copy, const RefCracked *
     int v = torn->of[copy];
     double lift;
     memcpy(point, torn->rest[v], 3 * sizeof *point);
-    if (!ref_cracked_side(cracked, torn->theta[v], torn->eye[copy], shape)) return;
+    if (!warp || !ref_cracked_side(cracked, torn->theta[v], torn->eye[copy], shape)) return;
     ref_foot_of(cracked->shell, warp, torn->theta[v], torn->rest[v], shape, &lift);
     for (int n = 0; n < shape->count; n++)
         for (int d = 0; d < 3; d++)

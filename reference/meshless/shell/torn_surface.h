@@ -38,8 +38,8 @@ bool ref_torn_update(RefTornSurface *torn, const RefCracked *cracked);
 SmMesh ref_torn_mesh(const RefTornSurface *torn);
 
 /* Their places, [2 (vertices + copies)], `outer` those of the vertices: copies move with the
- * functions on their side, and the inner sheet is a thickness below the outer one. O(triangles +
- * copies * covers). */
+ * functions on their side, or without `warp` are at rest, and the inner sheet is a thickness below
+ * the outer one. O(triangles + copies * covers). */
 void ref_torn_place(const RefTornSurface *torn, const RefCracked *cracked, const RefWarp *warp,
                     const double (*outer)[3], double thickness, double (*point)[3]);
 
