@@ -131,7 +131,7 @@ static double outwards(const RefWarp *warp)
     return volume < sm_dot(middle, side) ? -1 : 1;
 }
 
-static void make_particles(SmEngine *engine)
+static void make_particles(const SmMesh *mesh, SmEngine *engine)
 {
     RefShellBody *body = &engine->body;
     size_t count = (size_t)engine->count;
@@ -167,6 +167,9 @@ static SmCode shell_create(const SmVoxels *voxels, const SmEngineParams *params,
 {
     SmCode code = ref_meshless_check(voxels, params, error);
     if (code != SM_OK) return code;
+    if (params->meshless->strength > 0 && params->meshless->given)
+        return sm_fail(error, SM_INPUT,
+                       "strength: points without triangles do not come apart; give a mesh");
     SmEngine *engine = sm_alloc(1, sizeof *engine);
     sm_engine_pose(params, 0, engine->pose);
     code = make_sheet(params, engine, error);
@@ -174,7 +177,7 @@ static SmCode shell_create(const SmVoxels *voxels, const SmEngineParams *params,
         shell_destroy(engine);
         return code;
     }
-    make_particles(engine);
+    make_particles(params->meshless->mesh, engine);
     *result = engine;
     return SM_OK;
 }
