@@ -206,6 +206,36 @@ TEST(one_vertex_is_pulled)
     scene_free(&scene, engine);
 }
 
+/* A pulse of pressure bursts it: nodes are added where cracks run, and what is drawn of the surface
+ * comes apart in pieces that are closed. */
+TEST(one_that_is_blown_up_comes_apart)
+{
+    needs_solver();
+    Scene scene = ring_create();
+    scene.options.covers = 4.5;
+    scene.options.strength = 1e5;
+    scene.options.branching = 2;
+    scene.options.pressure = 2e4;
+    scene.options.pulse = 0.004;
+    scene.params.h = 5e-4;
+    SmEngine *engine = engine_of(&scene);
+    static double x[VERTICES][3];
+    SmMesh surface = {0};
+    assert_true(type->surface(engine, &surface));
+    SmMeshInfo before = sm_mesh_info(&surface);
+    long nodes = ref_shell_body(engine)->sheet.shell.nodes.count;
+    for (int step = 0; step < 12; step++) type->step(engine, NULL);
+    assert_true(ref_shell_body(engine)->sheet.shell.nodes.count > nodes);
+    assert_true(type->surface(engine, &surface));
+    SmMeshInfo after = sm_mesh_info(&surface);
+    assert_true(after.watertight && after.triangles > before.triangles);
+    assert_true(after.components > before.components);
+    type->get(engine, SM_POSITION, x);
+    for (int v = 0; v < VERTICES; v++) assert_true(isfinite(x[v][0] + x[v][1] + x[v][2]));
+    sm_mesh_free(&surface);
+    scene_free(&scene, engine);
+}
+
 TEST(what_it_refuses)
 {
     needs_solver();
