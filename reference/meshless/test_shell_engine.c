@@ -232,6 +232,16 @@ TEST(one_that_is_blown_up_comes_apart)
     assert_true(after.components > before.components);
     type->get(engine, SM_POSITION, x);
     for (int v = 0; v < VERTICES; v++) assert_true(isfinite(x[v][0] + x[v][1] + x[v][2]));
+    /* One whose crack could not be followed stands still, and is drawn where it is. */
+    ref_shell_body(engine)->broke = true;
+    static double still[VERTICES][3];
+    type->step(engine, NULL);
+    type->get(engine, SM_POSITION, still);
+    assert_memory_equal(still, x, sizeof x);
+    assert_false(type->surface(engine, &surface));
+    type->surface_points(engine, surface.position);
+    for (long n = 0; n < surface.vertex_count; n++)
+        assert_true(fabs(surface.position[n][0]) + fabs(surface.position[n][1]) < 100);
     sm_mesh_free(&surface);
     scene_free(&scene, engine);
 }

@@ -186,14 +186,16 @@ SmMesh ref_torn_mesh(const RefTornSurface *torn)
     return mesh;
 }
 
-/* Where a copy is. */
+/* Where a copy is; where its side has no functions, or without a warp, its vertex's place. */
 static void place_copy(const RefTornSurface *torn, long copy, const RefCracked *cracked,
-                       const RefWarp *warp, RefShape *shape, double point[3])
+                       const RefWarp *warp, const double (*outer)[3], RefShape *shape,
+                       double point[3])
 {
     int v = torn->of[copy];
     double lift;
-    memcpy(point, torn->rest[v], 3 * sizeof *point);
+    memcpy(point, outer[v], 3 * sizeof *point);
     if (!warp || !ref_cracked_side(cracked, torn->theta[v], torn->eye[copy], shape)) return;
+    memcpy(point, torn->rest[v], 3 * sizeof *point);
     ref_foot_of(cracked->shell, warp, torn->theta[v], torn->rest[v], shape, &lift);
     for (int n = 0; n < shape->count; n++)
         for (int d = 0; d < 3; d++)
@@ -209,7 +211,7 @@ void ref_torn_place(const RefTornSurface *torn, const RefCracked *cracked, const
     double(*inner)[3] = point + sheet;
     memcpy(point, outer, (size_t)torn->vertices * sizeof *point);
     for (long c = 0; c < torn->copies; c++)
-        place_copy(torn, c, cracked, warp, &shape, point[torn->vertices + c]);
+        place_copy(torn, c, cracked, warp, outer, &shape, point[torn->vertices + c]);
     memset(inner, 0, (size_t)sheet * sizeof *inner);
     for (long t = 0; t < torn->triangles; t++) {
         const int *k = torn->corner[t];
