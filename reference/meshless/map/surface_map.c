@@ -94,6 +94,23 @@ static SmCode between(const RefTriangulation *surface, const double *weight,
     return code;
 }
 
+/* The rectangle's sides, whose ratio is that of two conjugate forms' energies and whose area is the
+ * surface's, and the parameters: integrals of the forms from the vertex where each is 0. */
+static void lay_out(const RefTriangulation *surface, const double *weight, int first, int second,
+                    Plane *plane)
+{
+    double energy[2];
+    for (int d = 0; d < 2; d++)
+        energy[d] = ref_harmonic_product(surface, weight, plane->step[d], plane->step[d]);
+    double ratio = sqrt(energy[0] / energy[1]), area = ref_triangulation_area(surface);
+    plane->side[0] = sqrt(area / ratio);
+    plane->side[1] = sqrt(area * ratio);
+    for (int d = 0; d < 2; d++) {
+        scale(surface, plane->side[d], plane->step[d]);
+        plane->at[d] = ref_harmonic_integral(surface, d == 0 ? first : second, plane->step[d]);
+    }
+}
+
 /* The rectangle of a disk: theta1 between two opposite parts of its rim, theta2 between the others.
  * Both energies are too large, by nearly as much: the rectangle's shape is the root of their
  * ratio. */
@@ -114,16 +131,7 @@ static SmCode map_disk(const RefTriangulation *surface, const double *weight, co
     int root = surface->vertex[corner[0]];
     free(part);
     if (code != SM_OK) return code;
-    double energy[2];
-    for (int d = 0; d < 2; d++)
-        energy[d] = ref_harmonic_product(surface, weight, plane->step[d], plane->step[d]);
-    double ratio = sqrt(energy[0] / energy[1]), area = ref_triangulation_area(surface);
-    plane->side[0] = sqrt(area / ratio);
-    plane->side[1] = sqrt(area * ratio);
-    for (int d = 0; d < 2; d++) {
-        scale(surface, plane->side[d], plane->step[d]);
-        plane->at[d] = ref_harmonic_integral(surface, root, plane->step[d]);
-    }
+    lay_out(surface, weight, root, root, plane);
     return SM_OK;
 }
 
@@ -145,16 +153,7 @@ static SmCode map_annulus(const RefTriangulation *surface, const double *weight,
     if (code != SM_OK) return code;
     if (ref_harmonic_wedge(surface, plane->step[0], plane->step[1]) < 0)
         scale(surface, -1, plane->step[0]);
-    double energy[2];
-    for (int d = 0; d < 2; d++)
-        energy[d] = ref_harmonic_product(surface, weight, plane->step[d], plane->step[d]);
-    double ratio = sqrt(energy[0] / energy[1]), area = ref_triangulation_area(surface);
-    plane->side[0] = sqrt(area / ratio);
-    plane->side[1] = sqrt(area * ratio);
-    for (int d = 0; d < 2; d++) {
-        scale(surface, plane->side[d], plane->step[d]);
-        plane->at[d] = ref_harmonic_integral(surface, d == 0 ? origin : root, plane->step[d]);
-    }
+    lay_out(surface, weight, origin, root, plane);
     return SM_OK;
 }
 

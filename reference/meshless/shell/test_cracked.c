@@ -1,5 +1,4 @@
 /* Shells whose cracks grow: what is made again step by step beside what is made at once. */
-#include "../../../lib/pieces.h"
 #include "cracked.h"
 #include "steps.h"
 #include "test_charts.h"
@@ -418,18 +417,6 @@ TEST(new_functions_keep_momentum_and_add_no_energy)
         free(v);
         sheet_free(&sheet);
     }
-}
-
-/* Nodes by what hangs together, over the pairs of the matrices. */
-static SmPieces pieces_of(const RefShell *shell)
-{
-    SmPieces pieces;
-    const RefSparse *M = &shell->matrices.mass;
-    sm_pieces_init(M->columns, &pieces);
-    for (int c = 0; c < M->columns; c++)
-        for (int e = M->start[c]; e < M->start[c + 1]; e++) sm_pieces_link(&pieces, c, M->row[e]);
-    sm_pieces_finish(&pieces, NULL, M->columns);
-    return pieces;
 }
 
 /* A strip that flies, turns and swings is cut through, piece by piece, while it moves. */

@@ -2,6 +2,7 @@
 #ifndef REF_TEST_SHELL_H
 #define REF_TEST_SHELL_H
 
+#include "../../../lib/pieces.h"
 #include "../../../lib/vector.h"
 #include "../test_solver.h"
 #include "shell.h"
@@ -150,6 +151,18 @@ static inline double moved_by(const RefShell *shell, const RefRows *rows, const 
     ref_shape_free(&shape);
     free(u);
     return found;
+}
+
+/* Nodes by what hangs together, over the pairs of the matrices. */
+static inline SmPieces pieces_of(const RefShell *shell)
+{
+    SmPieces pieces;
+    const RefSparse *M = &shell->matrices.mass;
+    sm_pieces_init(M->columns, &pieces);
+    for (int c = 0; c < M->columns; c++)
+        for (int e = M->start[c]; e < M->start[c + 1]; e++) sm_pieces_link(&pieces, c, M->row[e]);
+    sm_pieces_finish(&pieces, NULL, M->columns);
+    return pieces;
 }
 
 #endif
