@@ -201,66 +201,84 @@ static int same_place(const RefChart *chart, const double a[2], const double b[2
     return -1;
 }
 
+/* Joins a chart's sides as those of a kind are, whose data are `waves`. */
+static void join_sides(RefChart *chart, int kind, const Waves *waves)
+{
+    if (kind == 3) ref_chart_wrap(chart, true, true);
+    if (kind == 4) ref_chart_skew(chart, waves->skew);
+    if (kind == 5) ref_chart_fold(chart, waves->low, (double[]){waves->low[0] + waves->skew / 2});
+}
+
+/* Which of the others each node is. */
+static int *twins_of(const RefChart *chart, const RefNodes *nodes, const RefNodes *others)
+{
+    int *twin = sm_alloc((size_t)nodes->count, sizeof *twin);
+    assert_int_equal(nodes->count, others->count);
+    for (int i = 0; i < nodes->count; i++) {
+        twin[i] = -1;
+        for (int j = 0; j < nodes->count && twin[i] < 0; j++)
+            if (same_place(chart, others->position[j], nodes->position[i]) >= 0) twin[i] = j;
+        assert_true(twin[i] >= 0);
+    }
+    return twin;
+}
+
+/* What a node and its images have at a place is added up: there may be several of them. */
+static void compare_functions(const RefChart *chart, const RefChart *moved, const RefNodes *nodes,
+                              const RefNodes *others)
+{
+    int *twin = twins_of(chart, nodes, others);
+    RefShape shape = ref_shape_create(nodes), same = ref_shape_create(others);
+    double(*part)[6] = sm_alloc((size_t)nodes->count, sizeof *part);
+    double(*there)[6] = sm_alloc((size_t)nodes->count, sizeof *there);
+    for (int trial = 0; trial < 200; trial++) {
+        double x[3], y[3];
+        random_place(chart, x);
+        memcpy(y, x, sizeof y);
+        assert_true(ref_chart_enter(moved, y));
+        bool turned = same_place(chart, y, x) == 1;
+        assert_true(ref_mls_at(nodes, REF_MLS_PLANE_QUADRATIC, x, &shape));
+        assert_true(ref_mls_at(others, REF_MLS_PLANE_QUADRATIC, y, &same));
+        memset(part, 0, (size_t)nodes->count * sizeof *part);
+        memset(there, 0, (size_t)nodes->count * sizeof *there);
+        add_all(&shape, part, 0.05);
+        add_all(&same, there, 0.05);
+        for (int i = 0; i < nodes->count; i++)
+            for (int k = 0; k < 6; k++) {
+                double sign = turned && (k == 1 || k == 2) ? -1 : 1;
+                assert_true(fabs(part[i][k] - sign * there[twin[i]][k]) < 1e-9);
+            }
+    }
+    sm_free_all(twin, part, there);
+    ref_shape_free(&shape);
+    ref_shape_free(&same);
+}
+
 /* The same surface cut open along other lines of roots: of a torus both ways, of a pillowcase along
- * the first axis, its folds being where they are. What a node and its images have at a place is
- * added up: there may be several of them. */
+ * the first axis, its folds being where they are. */
 TEST(moving_the_seams_changes_nothing)
 {
     enum { ACROSS = 7 };
     for (int kind = 3; kind < CHART_KINDS; kind++) {
         Waves waves;
-        RefChart chart = chart_of_kind(&seed, kind, ACROSS, 0.3, &waves), moved;
+        RefChart chart = chart_of_kind(&seed, kind, ACROSS, 0.3, &waves);
         chart.high[1] = chart.low[1] + (chart.high[0] - chart.low[0]); /* roots are as said */
         waves.side[1] = (kind == 5 ? 2 : 1) * waves.side[0];
-        if (kind == 3) ref_chart_wrap(&chart, true, true);
-        if (kind == 4) ref_chart_skew(&chart, waves.skew);
-        if (kind == 5) ref_chart_fold(&chart, waves.low, (double[]){waves.low[0] + waves.skew / 2});
-        RefQuadtree tree = quadtree_of(&chart, ACROSS, 500), other;
-        moved = chart;
+        RefChart moved = chart;
         for (int d = 0; d < (kind == 5 ? 1 : 2); d++) {
             double shift = (d + 1) * (chart.high[d] - chart.low[d]) / ACROSS;
             moved.low[d] += shift;
             moved.high[d] += shift;
         }
-        if (kind == 3) ref_chart_wrap(&moved, true, true);
-        if (kind == 4) ref_chart_skew(&moved, waves.skew);
-        if (kind == 5) ref_chart_fold(&moved, waves.low, (double[]){waves.low[0] + waves.skew / 2});
-        other = quadtree_of(&moved, ACROSS, 500);
+        join_sides(&chart, kind, &waves);
+        join_sides(&moved, kind, &waves);
+        RefQuadtree tree = quadtree_of(&chart, ACROSS, 500);
+        RefQuadtree other = quadtree_of(&moved, ACROSS, 500);
         assert_int_equal(tree.leaves, other.leaves);
         RefNodes nodes, others;
         ref_quadtree_nodes(&tree, 6, &nodes);
         ref_quadtree_nodes(&other, 6, &others);
-        int *twin = sm_alloc((size_t)nodes.count, sizeof *twin);
-        for (int i = 0; i < nodes.count; i++) {
-            twin[i] = -1;
-            for (int j = 0; j < nodes.count && twin[i] < 0; j++)
-                if (same_place(&chart, others.position[j], nodes.position[i]) >= 0) twin[i] = j;
-            assert_true(twin[i] >= 0);
-        }
-        RefShape shape = ref_shape_create(&nodes), same = ref_shape_create(&others);
-        double(*part)[6] = sm_alloc((size_t)nodes.count, sizeof *part);
-        double(*there)[6] = sm_alloc((size_t)nodes.count, sizeof *there);
-        for (int trial = 0; trial < 200; trial++) {
-            double x[3], y[3];
-            random_place(&chart, x);
-            memcpy(y, x, sizeof y);
-            assert_true(ref_chart_enter(&moved, y));
-            bool turned = same_place(&chart, y, x) == 1;
-            assert_true(ref_mls_at(&nodes, REF_MLS_PLANE_QUADRATIC, x, &shape));
-            assert_true(ref_mls_at(&others, REF_MLS_PLANE_QUADRATIC, y, &same));
-            memset(part, 0, (size_t)nodes.count * sizeof *part);
-            memset(there, 0, (size_t)nodes.count * sizeof *there);
-            add_all(&shape, part, 0.05);
-            add_all(&same, there, 0.05);
-            for (int i = 0; i < nodes.count; i++)
-                for (int k = 0; k < 6; k++) {
-                    double sign = turned && (k == 1 || k == 2) ? -1 : 1;
-                    assert_true(fabs(part[i][k] - sign * there[twin[i]][k]) < 1e-9);
-                }
-        }
-        sm_free_all(twin, part, there);
-        ref_shape_free(&shape);
-        ref_shape_free(&same);
+        compare_functions(&chart, &moved, &nodes, &others);
         ref_nodes_free(&nodes);
         ref_nodes_free(&others);
         ref_quadtree_free(&tree);
