@@ -142,7 +142,7 @@ endif()
 # A test that is a program, by its place from scripts/; skipped where something that it needs is absent.
 function(add_script_test name script)
   add_test(NAME ${name} COMMAND ${CMAKE_SOURCE_DIR}/scripts/${script} ${ARGN})
-  set_tests_properties(${name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 2400)
+  set_tests_properties(${name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 900)
 endfunction()
 
 if(NOT SHAPEBENCH_SANITIZE AND NOT SHAPEBENCH_CORE)
@@ -172,6 +172,7 @@ if(NOT SHAPEBENCH_SANITIZE AND NOT SHAPEBENCH_CORE)
     $<TARGET_FILE:shapebench_wheel_library> $<TARGET_FILE:shapebench_shared>)
   add_script_test(python_blender ../lib/python/blender/test_blender.py $<TARGET_FILE:shapebench_wheel_library>)
   add_script_test(page view/run_tests.py $<TARGET_FILE:shapebench>)
+  set_tests_properties(page PROPERTIES TIMEOUT 2400) # without a graphics card it draws slowly
 endif()
 
 # These start first, of any instruction set and precision, those that take longest before the others, so
