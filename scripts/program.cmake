@@ -57,5 +57,5 @@ install(FILES results/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/results) # h
 install(FILES results/page.html DESTINATION ${scripts_folder}) # reports have it
 install(DIRECTORY scripts/report DESTINATION ${scripts_folder}
   FILES_MATCHING PATTERN *.py PATTERN *.html PATTERN *.css PATTERN *.js PATTERN test_* EXCLUDE
-  PATTERN stored.py EXCLUDE) # a link
+  PATTERN __pycache__ EXCLUDE PATTERN stored.py EXCLUDE) # a link
 install(FILES lib/python/shapebench/stored.py DESTINATION ${scripts_folder}/report)
