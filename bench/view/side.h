@@ -12,8 +12,11 @@ typedef struct {
     SmError absent;
     ViewGrips grips;
     ViewTools tools;
-    long steps, timed; /* in all, and since the laps were cleared */
-    double lap[SM_STAGES];
+    long steps; /* in all */
+    long timed,
+        untimed; /* since the laps were cleared, and how many come before the next that is */
+    double lap[SM_STAGES]; /* seconds of those timed */
+    long laps[SM_STAGES];
     double build_seconds;
 
     int generation; /* of vertices and triangles */

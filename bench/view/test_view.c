@@ -564,6 +564,26 @@ TEST(other_bodies_are_not_taken_for_it)
     assert_int_equal(view_stored_for((int)strlen(santa)), 2);
 }
 
+/* The first step and every eighth one are timed; until one is, there is no mean. */
+TEST(one_step_of_eight_is_timed)
+{
+    open_scene(block);
+    for (int s = 0; s < SM_STAGES; s++) assert_true(isnan(view_stage_ms(0, s)));
+    double first = 0, mean = 0;
+    view_step(0, 1);
+    for (int s = 0; s < SM_STAGES; s++) first += view_stage_ms(0, s);
+    assert_true(first > 0);
+    view_step(0, 3);
+    view_step(0, 4);
+    for (int s = 0; s < SM_STAGES; s++) mean += view_stage_ms(0, s);
+    assert_true(mean == first);
+    view_step(0, 1);
+    for (int s = 0; s < SM_STAGES; s++) mean -= view_stage_ms(0, s);
+    assert_true(mean != 0);
+    view_clear_stages(0);
+    assert_true(isnan(view_stage_ms(0, SM_OTHER)));
+}
+
 /* Numbers that no side, vertex or grip has do nothing. */
 TEST(wrong_numbers_do_nothing)
 {

@@ -278,7 +278,10 @@ double view_stage_ms(int number, int stage)
 {
     const ViewSide *side = view_side_of(number);
     if (!side || stage < 0 || stage >= SM_STAGES || !side->timed) return NAN;
-    return 1e3 * side->lap[stage] / (double)side->timed;
+    static double clock; /* s a lap */
+    if (clock == 0) clock = sm_lap_seconds();
+    double seconds = side->lap[stage] - clock * (double)side->laps[stage];
+    return 1e3 * fmax(0, seconds) / (double)side->timed;
 }
 
 const char *view_stage_name(int number, int stage)
@@ -296,17 +299,13 @@ double view_paper_percent(int number, int stage)
     return row ? row->stage_percent[stage].value : NAN;
 }
 
-int view_stage_steps(int side)
-{
-    return view_side_of(side) ? (int)view_side_of(side)->timed : 0;
-}
-
 void view_clear_stages(int number)
 {
     ViewSide *side = view_side_of(number);
     if (!side) return;
-    side->timed = 0;
+    side->timed = side->untimed = 0;
     memset(side->lap, 0, sizeof side->lap);
+    memset(side->laps, 0, sizeof side->laps);
 }
 
 int view_surface(int side)

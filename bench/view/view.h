@@ -57,10 +57,10 @@ enum {
 };
 double view_figure(int side, int figure);
 
-/* Milliseconds a step of each of the five stages (lib/engine/stage.h) in the last view_step() calls
- * since view_clear_stages(), and how many steps that were. */
+/* Milliseconds a step of each of the five stages (lib/engine/stage.h), of the first and of every
+ * eighth step since view_clear_stages(); NaN: there was none. Reading the clock is a part of them.
+ */
 double view_stage_ms(int side, int stage);
-int view_stage_steps(int side);
 
 /* What the side's engine calls the stage; NULL: it has no such. */
 const char *view_stage_name(int side, int stage);
