@@ -564,6 +564,28 @@ TEST(other_bodies_are_not_taken_for_it)
     assert_int_equal(view_stored_for((int)strlen(santa)), 2);
 }
 
+/* Figures are of all bodies of a scene. */
+TEST(figures_of_three_bodies_are_thrice_one_body_s)
+{
+    const int figure[] = {VIEW_PARTICLES, VIEW_REGIONS, VIEW_LINKS};
+    enum { FIGURES = sizeof figure / sizeof *figure };
+    double one[VIEW_SIDES][FIGURES];
+    for (int bodies = 1; bodies <= 3; bodies += 2) {
+        char text[200];
+        snprintf(text, sizeof text, "mesh = \"shape:block\"; particles = 100; instances = %d;",
+                 bodies);
+        open_scene(text);
+        for (int s = 0; s < VIEW_SIDES; s++)
+            for (int f = 0; f < FIGURES; f++) {
+                double value = view_figure(s, figure[f]);
+                if (bodies == 1) one[s][f] = value;
+                assert_true(value == bodies * one[s][f]);
+            }
+        assert_true(one[VIEW_LATTICE][0] > 50 && one[VIEW_LATTICE][2] > 50 &&
+                    one[VIEW_OTHER][1] > 0);
+    }
+}
+
 /* The first step and every eighth one are timed; until one is, there is no mean. */
 TEST(one_step_of_eight_is_timed)
 {

@@ -235,10 +235,12 @@ static double counted(const ViewSide *side, int figure)
         SmCounts counts;
         const BenchRunner *runner = &side->play.group[g].runner;
         runner->type->count(runner->engine, &counts);
-        long value[] = {[VIEW_PARTICLES] = counts.particles, [VIEW_REGIONS] = counts.regions,
-                        [VIEW_LINKS] = counts.links,         [VIEW_BROKEN] = counts.broken,
-                        [VIEW_CONTACTS] = counts.contacts,   [VIEW_SUMMATION_NODES] = 0,
-                        [VIEW_BYTES] = counts.bytes};
+        long bodies = runner->particles / runner->count;
+        long value[] = {
+            [VIEW_PARTICLES] = counts.particles,  [VIEW_REGIONS] = bodies * counts.regions,
+            [VIEW_LINKS] = bodies * counts.links, [VIEW_BROKEN] = counts.broken,
+            [VIEW_CONTACTS] = counts.contacts,    [VIEW_SUMMATION_NODES] = 0,
+            [VIEW_BYTES] = counts.bytes};
         sum += (double)value[figure];
         mean = counts.summation_nodes;
     }
