@@ -124,6 +124,7 @@ static SmCode measure_sets(const BenchNames *isas, const BenchKernelParams *para
     for (int s = 0; s < isas->count && !code; s++) {
         code = sm_isa_use(isas->name[s], error);
         if (code) break;
+        bench_progress_part(params->progress, s, isas->count);
         bench_progress_show(params->progress, "peaks", 0);
         bench_peak_measure(machine, cores > params->threads ? cores : params->threads, 0, &peak[s]);
         code = bench_kernels_run(params, &peak[s], one, &made, error);

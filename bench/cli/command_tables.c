@@ -292,6 +292,7 @@ static SmCode measure_all(const Choices *chosen, BenchRow *rows, BenchTable *tab
     SmCode code = SM_OK;
     int measured = 0;
     while (measured < chosen->count && !code) {
+        bench_progress_part(&progress, measured, chosen->count);
         code = measure_scene(options, &chosen->scene[measured], &progress, &rows[measured], error);
         bench_progress_stop(&progress);
         if (!code) bench_table_rows(table, compare_rows(rows, ++measured, chosen->count));

@@ -6,6 +6,7 @@
 
 #include "../../lib/error.h"
 #include "../../lib/printable.h"
+#include "../system/terminal.h"
 
 void bench_grid_column(BenchGrid *grid, const char *heading, bool left)
 {
@@ -56,12 +57,40 @@ static const char *cell(const BenchGrid *grid, int line, int column)
     return line < 0 ? grid->heading[column] : grid->line[line][column];
 }
 
+/* The colour of a cell whose text is a verdict: green, yellow, red; "": of any other text. */
+static const char *verdict_colour(const char *text)
+{
+    static const struct {
+        const char *word, *colour;
+    } verdicts[] = {
+        {"VALID", "32"},      {"reproduced", "32"}, {"as set", "32"},
+        {"faster", "32"},     {"BUSY", "33"},       {"differs", "33"},
+        {"undecided", "33"},  {"too noisy", "33"},  {"too few samples", "33"},
+        {"INVALID", "31"},    {"slower", "31"},     {"not reproduced", "31"},
+        {"not as set", "31"},
+    };
+    for (size_t v = 0; v < sizeof verdicts / sizeof *verdicts; v++)
+        if (!strcmp(text, verdicts[v].word)) return verdicts[v].colour;
+    return "";
+}
+
 static void text_line(FILE *file, const BenchGrid *grid, int line)
 {
-    char text[BENCH_GRID_COLUMNS * (BENCH_GRID_TEXT + 2) + 1] = "";
-    for (int c = 0; c < grid->columns; c++)
-        sm_append(text, sizeof text, "%s%*s", c ? "  " : "",
-                  grid->left[c] ? -grid->width[c] : grid->width[c], cell(grid, line, c));
+    enum { CODES = 16 };
+    char text[BENCH_GRID_COLUMNS * (BENCH_GRID_TEXT + 2 + CODES) + 1] = "";
+    bool coloured = bench_colours(file);
+    for (int c = 0; c < grid->columns; c++) {
+        const char *word = cell(grid, line, c);
+        const char *colour = !coloured ? "" : line < 0 ? "1" : verdict_colour(word);
+        int blanks = grid->width[c] - (int)strlen(word);
+        if (blanks < 0) blanks = 0;
+        sm_append(text, sizeof text, "%s%*s", c ? "  " : "", grid->left[c] ? 0 : blanks, "");
+        if (*colour)
+            sm_append(text, sizeof text, "\033[%sm%s\033[0m", colour, word);
+        else
+            sm_append(text, sizeof text, "%s", word);
+        sm_append(text, sizeof text, "%*s", grid->left[c] ? blanks : 0, "");
+    }
     for (size_t end = strlen(text); end && text[end - 1] == ' ';) text[--end] = '\0';
     fprintf(file, "%s\n", text);
 }
