@@ -15,6 +15,11 @@ static bool terminal(const RefCracked *cracked, long c)
     return cracked->shell->tree.cell[c].child < 0;
 }
 
+static double edge_of(const RefCracked *cracked, long c)
+{
+    return ref_quadtree_edge(&cracked->shell->tree, cracked->shell->tree.cell + c);
+}
+
 static void forget_cell(RefCrackedCell *cell)
 {
     ref_samples_free(&cell->samples);
@@ -167,7 +172,7 @@ static int functions_at(const void *samples, const double theta[3], RefShape *sh
     const RefShell *shell = cracked->shell;
     int c = ref_quadtree_at(&shell->tree, theta), n = sample_beside(cracked, c, theta);
     if (n < 0)
-        return ref_samples_shape(&shell->nodes, shell->basis, cracked->cell[c].reach, theta, shape);
+        return ref_samples_shape(&shell->nodes, shell->basis, edge_of(cracked, c), theta, shape);
     ref_samples_expand(&cracked->cell[c].samples, n, theta, shape);
     return shape->count ? (int)shell->basis : 0;
 }
@@ -386,12 +391,12 @@ static void forget(const RefCrackedFields *fields, Before *before)
     sm_free_all(before->X, before->part, before->field);
 }
 
-/* A place among the functions that there were. */
-static RefFieldPlace place_before(const RefShell *shell, double edge, const double theta[3],
+/* A place among the functions that there were, of the cell that was terminal then. */
+static RefFieldPlace place_before(const RefCracked *cracked, long cell, const double theta[3],
                                   Before *before)
 {
     RefShape *shape = &before->shape;
-    ref_samples_shape(&before->nodes, shell->basis, edge, theta, shape);
+    ref_samples_shape(&before->nodes, cracked->shell->basis, edge_of(cracked, cell), theta, shape);
     for (int n = 0; n < shape->count; n++) ref_samples_part(shape, n, before->part[n]);
     return (RefFieldPlace){shape->count, shape->node, (const double(*)[6])before->part,
                            (const double(*)[3])before->X, NULL};
@@ -412,7 +417,7 @@ static void place_field(const RefCracked *cracked, const RefCrackedCell *cell, i
         for (int d = 0; d < 3; d++) u[d] = share * before->field[f][parent][d];
     }
     for (int k = 0; k < 2; k++) {
-        RefFieldPlace place = place_before(shell, cell->reach, at[k], before);
+        RefFieldPlace place = place_before(cracked, cell->from, at[k], before);
         double share = k ? -ldexp(1, -2 * (cell->splits - from->splits)) : 1;
         for (int f = 0; f < fields->count; f++)
             for (int n = 0; n < place.count; n++)
@@ -495,17 +500,17 @@ static void balance_old(const RefSamples *old, const Before *before, int fields,
 }
 
 /* What is left of the fields at a cell's samples. */
-static void add_rest(const RefCracked *cracked, const RefCrackedCell *cell, const RefSamples *old,
-                     Before *before, const RefCrackedFields *fields, Balance *balance)
+static void add_rest(const RefCracked *cracked, long c, const RefSamples *old, Before *before,
+                     const RefCrackedFields *fields, Balance *balance)
 {
-    const RefSamples *samples = &cell->samples;
+    const RefSamples *samples = &cracked->cell[c].samples;
     RefFieldNorm norm = {cracked->options.thickness, fields->mass_share, cracked->options.material};
     for (long p = 0; p < samples->count; p++) {
         double area = samples->area[p];
         RefFieldPlace new = place_at(samples, p, cracked->shell->X);
         RefFieldPlace was =
             old->count ? place_at(old, p, before->X)
-                       : place_before(cracked->shell, cell->reach, samples->theta[p], before);
+                       : place_before(cracked, cracked->cell[c].from, samples->theta[p], before);
         if (!old->count) {
             balance_place(&was, -area, before, fields->count, balance);
             balance->area += new.count ? area : 0;
@@ -567,7 +572,7 @@ static void remake_stale(RefCracked *cracked, const unsigned char *fresh, unsign
                 take_samples(cracked, c, &shape, &whole, &cell->samples);
             integrate(cracked, cell, &work);
             touch(&cell->element, touched);
-            if (fields) add_rest(cracked, cell, &old, before, fields, &balance);
+            if (fields) add_rest(cracked, c, &old, before, fields, &balance);
             cracked->counts.cells_again++;
         } else {
             cell->nodes = 0;

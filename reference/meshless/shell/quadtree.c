@@ -18,6 +18,11 @@ void ref_quadtree_cell(const RefQuadtree *tree, const RefCell *cell, double midd
     }
 }
 
+double ref_quadtree_edge(const RefQuadtree *tree, const RefCell *cell)
+{
+    return cell->size * fmax(tree->unit[0], tree->unit[1]);
+}
+
 int ref_quadtree_at(const RefQuadtree *tree, const double theta[2])
 {
     int place[2], at = 0, whole = 1 << REF_QUADTREE_LEVELS;
@@ -227,7 +232,7 @@ void ref_quadtree_add_nodes(const RefQuadtree *tree, const RefCell *cell, double
             theta[d] = middle[d] + 0.5 * step[d] * edge[d];
             rim = rim && (step[d] == 0 || !ref_chart_enter(tree->chart, beyond));
         }
-        if (rim) nodes->reach[nodes->count++] = eta / 2 * fmax(edge[0], edge[1]);
+        if (rim) nodes->reach[nodes->count++] = eta / 2 * ref_quadtree_edge(tree, cell);
     }
 }
 

@@ -45,6 +45,9 @@ int ref_quadtree_at(const RefQuadtree *tree, const double theta[2]);
 void ref_quadtree_cell(const RefQuadtree *tree, const RefCell *cell, double middle[2],
                        double edge[2]);
 
+/* The longer one of its edges: the one that covers are so many times as wide as. */
+double ref_quadtree_edge(const RefQuadtree *tree, const RefCell *cell);
+
 /* Splits a terminal cell, and then others until the tree is balanced again. Four cells behind all
  * others are its own. O(cells). False where it cannot be any smaller. */
 bool ref_quadtree_split(RefQuadtree *tree, long cell);

@@ -139,7 +139,7 @@ void ref_samples_of(const RefQuadtree *tree, long cell, const RefNodes *nodes, R
 {
     *samples = create(REF_SAMPLES_PER_CELL);
     place(tree, tree->cell + cell, samples);
-    evaluate(nodes, basis, tree->unit[0] * tree->cell[cell].size, shape, samples);
+    evaluate(nodes, basis, ref_quadtree_edge(tree, tree->cell + cell), shape, samples);
 }
 
 SmCode ref_samples_take(const RefQuadtree *tree, RefNodes *nodes, RefBasis basis,

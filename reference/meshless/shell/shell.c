@@ -44,11 +44,10 @@ SmCode ref_shell_build(const RefChart *chart, const RefShellOptions *options, Re
 
 int ref_shell_shape(const RefShell *shell, const double theta[3], RefShape *shape)
 {
-    double middle[2], edge[2];
     if (shell->functions.at) return shell->functions.at(shell->functions.samples, theta, shape);
     const RefCell *cell = shell->tree.cell + ref_quadtree_at(&shell->tree, theta);
-    ref_quadtree_cell(&shell->tree, cell, middle, edge);
-    return ref_samples_shape(&shell->nodes, shell->basis, edge[0], theta, shape);
+    double edge = ref_quadtree_edge(&shell->tree, cell);
+    return ref_samples_shape(&shell->nodes, shell->basis, edge, theta, shape);
 }
 
 bool ref_shell_at(const RefShell *shell, const double theta[3], RefShape *shape, RefFrame *frame)
