@@ -94,6 +94,23 @@ static void find_lift(RefCracked *cracked)
     ref_shape_free(&shape);
 }
 
+/* Place and area of the whole shell's middle surface; where its functions are not defined, of the
+ * chart's, which that was fitted to. */
+static void whole_at(const RefCracked *cracked, const double theta[3], RefShape *whole, double x[3],
+                     double *area)
+{
+    const RefChart *chart = &cracked->shell->chart;
+    if (ref_mls_at(&cracked->whole, cracked->shell->basis, theta, whole)) {
+        RefFrame frame = ref_middle_of((const double(*)[3])cracked->whole_X, whole);
+        memcpy(x, frame.x, sizeof frame.x);
+        *area = frame.area;
+    } else {
+        double L = chart->factor(chart->data, theta);
+        chart->place(chart->data, theta, x);
+        *area = L * L;
+    }
+}
+
 /* The samples of a cell; its areas are those of the whole shell. */
 static void take_samples(const RefCracked *cracked, long c, RefShape *shape, RefShape *whole,
                          RefSamples *samples)
@@ -101,9 +118,9 @@ static void take_samples(const RefCracked *cracked, long c, RefShape *shape, Ref
     const RefShell *shell = cracked->shell;
     ref_samples_of(&shell->tree, c, &shell->nodes, shell->basis, shape, samples);
     for (long p = 0; p < samples->count; p++) {
-        ref_mls_at(&cracked->whole, shell->basis, samples->theta[p], whole);
-        RefFrame frame = ref_middle_of((const double(*)[3])cracked->whole_X, whole);
-        samples->area[p] = frame.area * samples->weight[p];
+        double x[3], area;
+        whole_at(cracked, samples->theta[p], whole, x, &area);
+        samples->area[p] = area * samples->weight[p];
     }
 }
 
@@ -316,9 +333,9 @@ static void place_parameter(RefCracked *cracked, const RefCrackedCell *cell, int
 {
     const RefShell *shell = cracked->shell;
     const double *lift = cracked->whole_lift[cracked->cell[cell->whole].node[0]];
-    if (!ref_mls_at(&cracked->whole, shell->basis, shell->nodes.position[node], whole)) return;
-    RefFrame frame = ref_middle_of((const double(*)[3])cracked->whole_X, whole);
-    for (int d = 0; d < 3; d++) shell->X[node][d] = frame.x[d] + ldexp(lift[d], -2 * cell->splits);
+    double x[3], area;
+    whole_at(cracked, shell->nodes.position[node], whole, x, &area);
+    for (int d = 0; d < 3; d++) shell->X[node][d] = x[d] + ldexp(lift[d], -2 * cell->splits);
 }
 
 /* Nodes of cells that were split make way for those of new cells, which are marked in `fresh`

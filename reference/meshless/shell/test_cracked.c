@@ -507,3 +507,28 @@ TEST(what_comes_apart_adds_up)
     free(u);
     free(v);
 }
+
+/* New nodes and samples lie on the chart's surface where the whole shell's functions are undefined:
+ * here everywhere, as its covers are taken away. */
+TEST(the_chart_serves_where_the_whole_shell_has_no_functions)
+{
+    needs_solver();
+    Sheet sheet;
+    RefChart flat = {.high = {1.5, 1}, .factor = factor_one, .place = place_flat};
+    sheet_of(&flat, &thin, 0.9, &sheet);
+    long nodes = sheet.shell.nodes.count;
+    for (long n = 0; n < sheet.cracked.whole.count; n++) sheet.cracked.whole.reach[n] *= 1e-2;
+    ref_nodes_bin(&sheet.cracked.whole);
+    for (int n = 0; n < 3; n++) random_start(&sheet.cracked.cracks, 0.2);
+    ref_cracked_update(&sheet.cracked, NULL);
+    assert_true(sheet.cracked.counts.split > 0 && sheet.shell.nodes.count > nodes);
+    for (long n = nodes; n < sheet.shell.nodes.count; n++)
+        for (int d = 0; d < 3; d++)
+            assert_true(fabs(sheet.shell.X[n][d] - sheet.shell.nodes.position[n][d]) < 0.02);
+    for (long c = 0; c < sheet.shell.tree.count; c++) {
+        const RefSamples *samples = &sheet.cracked.cell[c].samples;
+        for (long p = 0; p < samples->count; p++)
+            assert_true(fabs(samples->area[p] / samples->weight[p] - 1) < 0.02);
+    }
+    sheet_free(&sheet);
+}
