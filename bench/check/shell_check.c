@@ -42,7 +42,7 @@ static void check_shapes(const RefShellBody *body, BenchElasticFound *found)
         double sum[3] = {-1}, middle[2], edge[2];
         ref_quadtree_cell(&shell->tree, shell->tree.cell + ref_quadtree_at(&shell->tree, theta),
                           middle, edge);
-        bool covered = ref_mls_at(&shell->nodes, shell->basis, theta, &shape);
+        bool covered = ref_shell_shape(shell, theta, &shape);
         for (int n = 0; n < shape.count; n++) {
             sum[0] += shape.value[n];
             for (int d = 0; d < 2; d++) sum[1 + d] += shape.gradient[n][d] * edge[d];
@@ -174,7 +174,7 @@ static void check_step(const RefSheet *sheet, const double *before, const double
                        const double *slope, BenchElasticFound *found)
 {
     size_t size = 3 * (size_t)sheet->warp.nodes;
-    int terms = sheet->holds > 1 ? 3 * (sheet->holds - 1) : 0;
+    int terms = 3 * sheet->followers;
     double scale, *r = residual_of(sheet, before, force, &scale), off = 0;
     bool *bound = sm_alloc(size, sizeof *bound);
     double *N = sm_alloc((size_t)(terms * terms), sizeof *N),
@@ -257,14 +257,14 @@ void bench_shell_check_state(BenchRunner *runner, BenchElasticFound *found)
     RefSheet *sheet = &body->sheet;
     size_t size = 3 * (size_t)sheet->warp.nodes;
     double *before = sm_alloc(2 * size, sizeof *before), *force = sm_alloc(size, sizeof *force);
-    double *slope =
-        sm_alloc(3 * size * (size_t)(sheet->holds ? sheet->holds - 1 : 0), sizeof *slope);
+    double *slope = sm_alloc(3 * size * (size_t)sheet->followers, sizeof *slope);
     double time = runner->time;
     runner->type->get_state(runner->engine, before);
     runner->type->set_state(runner->engine, before);
     memcpy(force, sheet->warp.pulled, size * sizeof *force);
-    for (int k = 1; k < sheet->holds; k++)
-        memcpy(slope + 3 * size * (size_t)(k - 1), sheet->hold[k].slope, 3 * size * sizeof *slope);
+    for (int f = 0; f < sheet->followers; f++)
+        memcpy(slope + 3 * size * (size_t)f, sheet->hold[sheet->follower[f]].slope,
+               3 * size * sizeof *slope);
     bench_runner_step(runner);
     check_step(sheet, before, force, slope, found);
     check_holds(body, found);

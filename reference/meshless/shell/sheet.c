@@ -11,16 +11,23 @@
 
 #define CONST(array) ((const double(*)[3])(array))
 
+static void forget_holds(RefSheet *sheet)
+{
+    sheet->hold = NULL;
+    sheet->follower = NULL;
+    sheet->aim = sheet->gap = sheet->yield = NULL;
+    sheet->rows = (RefRows){0};
+    sheet->holds = sheet->followers = 0;
+}
+
 static void release(RefSheet *sheet)
 {
     for (int k = 0; k < sheet->holds; k++)
         sm_free_all(sheet->hold[k].x, sheet->hold[k].reach, sheet->hold[k].slope,
                     sheet->hold[k].answer, sheet->hold[k].flux);
     ref_rows_free(&sheet->rows);
-    sm_free_all(sheet->hold, sheet->aim);
-    sheet->hold = NULL;
-    sheet->aim = NULL;
-    sheet->holds = 0;
+    sm_free_all(sheet->hold, sheet->follower, sheet->aim, sheet->gap, sheet->yield);
+    forget_holds(sheet);
 }
 
 void ref_sheet_free(RefSheet *sheet)
@@ -117,11 +124,11 @@ static bool take_hold(const RefSheet *sheet, const RefSheetGrip *grip, RefRows *
         memcpy(hold->tangent, frame.tangent, sizeof hold->tangent);
     }
     for (int p = 0; covered && p < grip->count; p++) {
-        ref_mls_at(&sheet->shell.nodes, sheet->shell.basis, grip->theta[p], &shape);
+        ref_shell_shape(&sheet->shell, grip->theta[p], &shape);
         add_row(&shape, shape.value, 1, rows);
     }
     if (covered && !grip->loose) {
-        ref_mls_at(&sheet->shell.nodes, sheet->shell.basis, grip->theta[0], &shape);
+        ref_shell_shape(&sheet->shell, grip->theta[0], &shape);
         for (int k = 0; k < 2; k++) add_row(&shape, &shape.gradient[0][k], 3, rows);
     }
     hold->cell = leaf_at(&sheet->shell.tree, grip->theta[0]);
@@ -152,38 +159,68 @@ static void bind_row(const RefRows *rows, long row, long less, RefRows *bound)
     }
 }
 
-/* Rows of the parameters: all of the first hold's, of others the points' but for the first one's
+static int piece_at(const RefWarp *warp, const RefRows *rows, long row)
+{
+    return warp->piece[rows->column[rows->start[row]]];
+}
+
+/* Which holds lead, and room for what follows them. */
+static void find_leads(RefSheet *sheet, const RefRows *rows)
+{
+    sheet->follower = sm_alloc((size_t)sheet->holds, sizeof *sheet->follower);
+    for (int k = 0; rows->start && k < sheet->holds; k++) {
+        int lead = 0, piece = piece_at(&sheet->warp, rows, sheet->hold[k].row);
+        while (piece_at(&sheet->warp, rows, sheet->hold[lead].row) != piece) lead++;
+        sheet->hold[k].lead = lead;
+        if (lead < k) sheet->follower[sheet->followers++] = k;
+    }
+    size_t count = 3 * (size_t)sheet->followers;
+    sheet->gap = sm_alloc(count, sizeof *sheet->gap);
+    sheet->yield = sm_alloc(count * count, sizeof *sheet->yield);
+}
+
+/* Rows of the parameters: all of a leading hold's, of others the points' but for the first one's
  * displacement, and the slopes. */
 static RefRows bind_rows(const RefRows *rows, const RefSheetHold *hold, int holds)
 {
     RefRows bound = {0};
     for (int k = 0; rows->start && k < holds; k++) {
         long first = hold[k].row, count = hold[k].points + (hold[k].loose ? 0 : 2);
-        for (long r = k == 0 ? 0 : 1; r < count; r++)
-            bind_row(rows, first + r, k > 0 && r < hold[k].points ? first : -1, &bound);
+        bool leads = hold[k].lead == k;
+        for (long r = leads ? 0 : 1; r < count; r++)
+            bind_row(rows, first + r, !leads && r < hold[k].points ? first : -1, &bound);
     }
     return bound;
 }
 
-/* How far a hold's first point and the first hold's move apart by what tangents gain: a solve for
- * each, before anything is held. */
-static void find_reaches(RefSheet *sheet, const RefRows *rows, RefSheetHold *hold, int holds)
+/* How far a hold's first point and its leader's move apart by what tangents gain: a solve for each
+ * of the surface that nothing holds. */
+static SmCode find_reaches(RefSheet *sheet, const RefRows *rows, SmError *error)
 {
-    size_t size = 9 * (size_t)sheet->warp.nodes;
-    double *b = sm_alloc((size_t)sheet->warp.nodes, sizeof *b);
-    for (int k = 1; rows->start && k < holds; k++) {
-        memset(b, 0, (size_t)sheet->warp.nodes * sizeof *b);
-        for (long e = rows->start[hold[k].row]; e < rows->start[hold[k].row + 1]; e++)
+    size_t nodes = (size_t)sheet->warp.nodes, size = 9 * nodes;
+    RefSolver *solver;
+    if (sheet->followers == 0) return SM_OK;
+    SmCode code = ref_warp_solver(&sheet->warp, &(RefRows){0}, &solver, error);
+    if (code != SM_OK) return code;
+    double *b = sm_alloc(nodes, sizeof *b);
+    for (int f = 0; f < sheet->followers; f++) {
+        RefSheetHold *hold = sheet->hold + sheet->follower[f];
+        long row = hold->row, lead = sheet->hold[hold->lead].row;
+        memset(b, 0, nodes * sizeof *b);
+        for (long e = rows->start[row]; e < rows->start[row + 1]; e++)
             b[rows->column[e]] += rows->value[e];
-        for (long e = rows->start[0]; e < rows->start[1]; e++) b[rows->column[e]] -= rows->value[e];
-        hold[k].reach = sm_alloc((size_t)sheet->warp.nodes, sizeof *hold[k].reach);
-        ref_solver_solve(sheet->warp.solver, b, NULL, hold[k].reach);
-        hold[k].slope = sm_alloc(size, sizeof *hold[k].slope);
-        hold[k].answer = sm_alloc(size, sizeof *hold[k].answer);
-        hold[k].flux = sm_alloc(REF_WARP_PLACES * (size_t)sheet->warp.cells, sizeof *hold[k].flux);
-        ref_warp_flux(&sheet->warp, hold[k].reach, hold[k].flux);
+        for (long e = rows->start[lead]; e < rows->start[lead + 1]; e++)
+            b[rows->column[e]] -= rows->value[e];
+        hold->reach = sm_alloc(nodes, sizeof *hold->reach);
+        ref_solver_solve(solver, b, NULL, hold->reach);
+        hold->slope = sm_alloc(size, sizeof *hold->slope);
+        hold->answer = sm_alloc(size, sizeof *hold->answer);
+        hold->flux = sm_alloc(REF_WARP_PLACES * (size_t)sheet->warp.cells, sizeof *hold->flux);
+        ref_warp_flux(&sheet->warp, hold->reach, hold->flux);
     }
+    ref_solver_destroy(solver);
     free(b);
+    return SM_OK;
 }
 
 static void displace(const double pose[3][4], const double x[3], double way[3])
@@ -201,13 +238,14 @@ static void set_targets(RefSheet *sheet)
         const RefSheetHold *hold = sheet->hold + k;
         const double(*pose)[4] = (const double(*)[4])hold->pose;
         double(*target)[3] = sheet->warp.target + hold->row;
+        bool leads = hold->lead == k;
         for (int p = 0; p < hold->points; p++) {
             double way[3], turn[3];
             for (int d = 0; d < 3; d++) way[d] = hold->x[p][d] - hold->x[0][d];
             sm_cross(hold->turn, way, turn);
             displace(pose, hold->x[p], target[p]);
-            for (int d = 0; d < 3 && (k == 0 || p > 0); d++)
-                *aim++ = turn[d] + (k == 0 ? target[0][d] : 0);
+            for (int d = 0; d < 3 && (leads || p > 0); d++)
+                *aim++ = turn[d] + (leads ? target[0][d] : 0);
         }
         for (int a = 0; !hold->loose && a < 2; a++) {
             sm_cross(hold->turn, hold->tangent[a], aim);
@@ -219,18 +257,33 @@ static void set_targets(RefSheet *sheet)
     }
 }
 
-/* Where what is held is at present becomes where it is held. The constant that u may be more by
- * makes u what moves at the first hold, or of a free piece on average. */
+/* The constants that u may be more by make u what moves at a piece's first hold, or of a free piece
+ * on average. */
+static void shift_pieces(RefSheet *sheet, double (*u)[3])
+{
+    const RefWarp *warp = &sheet->warp;
+    double(*shift)[3] = warp->all;
+    ref_warp_anchor(&sheet->warp, u);
+    memset(shift, 0, (size_t)warp->pieces * sizeof *shift);
+    for (int k = sheet->holds - 1; k >= 0; k--) {
+        const RefSheetHold *hold = sheet->hold + k;
+        long lead = sheet->hold[hold->lead].row;
+        for (int p = hold->points - 1; p >= 0; p--)
+            for (int d = 0; d < 3; d++)
+                shift[piece_at(warp, &warp->rows, hold->row + p)][d] =
+                    row_of(&warp->rows, lead, CONST(warp->moved), d) -
+                    row_of(&warp->rows, lead, CONST(u), d);
+    }
+    for (long n = 0; n < warp->nodes; n++)
+        for (int d = 0; d < 3; d++) u[n][d] += shift[warp->piece[n]][d];
+}
+
+/* Where what is held is at present becomes where it is held. */
 static void start_holds(RefSheet *sheet)
 {
-    double(*u)[3] = (double(*)[3])sheet->steps.u, shift[3] = {0};
+    double(*u)[3] = (double(*)[3])sheet->steps.u;
     const RefWarp *warp = &sheet->warp;
-    ref_warp_anchor(&sheet->warp, u);
-    for (int d = 0; d < 3 && sheet->holds; d++)
-        shift[d] =
-            row_of(&warp->rows, 0, CONST(warp->moved), d) - row_of(&warp->rows, 0, CONST(u), d);
-    for (long n = 0; n < warp->nodes; n++)
-        for (int d = 0; d < 3 && warp->held[warp->piece[n]]; d++) u[n][d] += shift[d];
+    shift_pieces(sheet, u);
     for (int k = 0; k < sheet->holds; k++) {
         RefSheetHold *hold = sheet->hold + k;
         double R[9];
@@ -244,54 +297,60 @@ static void start_holds(RefSheet *sheet)
     }
 }
 
-/* Steps under other rows, from the same state. */
-static SmCode change_steps(RefSheet *sheet, const RefRows *rows, SmError *error)
+/* All grips' holds and rows. */
+static SmCode take_holds(RefSheet *sheet, int grips, const RefSheetGrip *grip, RefRows *rows,
+                         SmError *error)
 {
-    RefSteps steps;
+    sheet->hold = sm_alloc((size_t)grips, sizeof *sheet->hold);
+    while (sheet->holds < grips) {
+        int k = sheet->holds++;
+        if (!take_hold(sheet, grip + k, rows, sheet->hold + k))
+            return sm_fail(error, SM_INPUT,
+                           "a handle holds a point that the shell's nodes do not cover");
+    }
+    find_leads(sheet, rows);
+    return SM_OK;
+}
+
+/* Steps under other rows, from the same state. */
+static SmCode change_steps(const RefSheet *sheet, const RefRows *rows, RefSteps *steps,
+                           SmError *error)
+{
     SmCode code = ref_steps_create(&sheet->shell.matrices, &sheet->options.damping,
-                                   sheet->options.h, rows, &steps, error);
+                                   sheet->options.h, rows, steps, error);
     if (code != SM_OK) return code;
     size_t size = 3 * (size_t)sheet->shell.nodes.count * sizeof(double);
-    memcpy(steps.u, sheet->steps.u, size);
-    memcpy(steps.v, sheet->steps.v, size);
-    ref_steps_free(&sheet->steps);
-    sheet->steps = steps;
+    memcpy(steps->u, sheet->steps.u, size);
+    memcpy(steps->v, sheet->steps.v, size);
     return SM_OK;
 }
 
 SmCode ref_sheet_hold(RefSheet *sheet, int grips, const RefSheetGrip *grip, SmError *error)
 {
+    RefSheet next = *sheet;
     RefRows rows = {0};
-    bool covered = true;
-    RefSheetHold *hold = sm_alloc((size_t)grips, sizeof *hold);
-    int holds = 0;
-    release(sheet);
-    SmCode code = ref_warp_hold(&sheet->warp, &rows, error);
-    while (covered && holds < grips) {
-        covered = take_hold(sheet, grip + holds, &rows, hold + holds);
-        holds++;
-    }
-    if (code == SM_OK && !covered)
-        code =
-            sm_fail(error, SM_INPUT, "a handle holds a point that the shell's nodes do not cover");
-    if (code == SM_OK) find_reaches(sheet, &rows, hold, holds);
+    RefSteps steps = {.solver = NULL};
+    forget_holds(&next);
+    SmCode code = take_holds(&next, grips, grip, &rows, error);
+    if (code == SM_OK) code = find_reaches(&next, &rows, error);
     if (code == SM_OK) {
-        sheet->rows = bind_rows(&rows, hold, holds);
-        code = change_steps(sheet, &sheet->rows, error);
+        next.rows = bind_rows(&rows, next.hold, next.holds);
+        next.aim = sm_alloc((size_t)next.rows.count, sizeof *next.aim);
+        code = change_steps(sheet, &next.rows, &steps, error);
     }
-    if (code == SM_OK && holds) code = ref_warp_hold(&sheet->warp, &rows, error);
-    sheet->hold = hold;
-    sheet->holds = holds;
-    sheet->aim = sm_alloc((size_t)sheet->rows.count, sizeof *sheet->aim);
-    if (code != SM_OK)
-        release(sheet);
-    else {
-        start_holds(sheet);
-        ref_warp_pull(&sheet->warp, CONST(sheet->weight));
-        ref_sheet_pose(sheet);
-    }
+    if (code == SM_OK) code = ref_warp_hold(&next.warp, &rows, error);
     ref_rows_free(&rows);
-    return code;
+    if (code != SM_OK) {
+        ref_steps_free(&steps);
+        release(&next);
+        return code;
+    }
+    release(sheet);
+    ref_steps_free(&sheet->steps);
+    next.steps = steps;
+    *sheet = next;
+    ref_sheet_settle(sheet);
+    return SM_OK;
 }
 
 SmCode ref_sheet_renew(RefSheet *sheet, const double *u, const double *v, const double *moved,
@@ -342,8 +401,8 @@ void ref_sheet_aim(RefSheet *sheet, int k, const double pose[3][4])
 static void find_slopes(RefSheet *sheet, int axis)
 {
     size_t from = 3 * (size_t)sheet->warp.nodes * (size_t)axis;
-    for (int k = 1; k < sheet->holds; k++) {
-        const RefSheetHold *hold = sheet->hold + k;
+    for (int f = 0; f < sheet->followers; f++) {
+        const RefSheetHold *hold = sheet->hold + sheet->follower[f];
         ref_warp_slope(&sheet->warp, (const double(*)[2])hold->flux, axis,
                        (double(*)[3])(hold->slope + from));
         ref_solver_solve(sheet->steps.solver, hold->slope + from, NULL, hold->answer + from);
@@ -357,15 +416,16 @@ void ref_sheet_pose(RefSheet *sheet)
     for (int axis = 0; axis < 3; axis++) find_slopes(sheet, axis);
 }
 
-/* By how much the holds beyond the first are to move, less what these speeds make them. */
-static void find_gaps(const RefSheet *sheet, double *gap)
+/* By how much the holds that others lead are to move, less what these speeds make them. */
+static void find_gaps(RefSheet *sheet)
 {
     const RefWarp *warp = &sheet->warp;
     size_t size = 3 * (size_t)warp->nodes;
-    for (int k = 1; k < sheet->holds; k++)
+    double *gap = sheet->gap;
+    for (int f = 0; f < sheet->followers; f++)
         for (size_t d = 0; d < 3; d++, gap++) {
-            const RefSheetHold *hold = sheet->hold + k;
-            *gap = warp->target[hold->row][d] - warp->target[0][d];
+            const RefSheetHold *hold = sheet->hold + sheet->follower[f];
+            *gap = warp->target[hold->row][d] - warp->target[sheet->hold[hold->lead].row][d];
             for (long n = 0; n < warp->nodes; n++) *gap -= hold->reach[n] * warp->right[n][d];
             for (size_t n = 0; n < size; n++)
                 *gap -= hold->slope[d * size + n] * sheet->steps.h * sheet->steps.v[n];
@@ -376,14 +436,14 @@ static void find_gaps(const RefSheet *sheet, double *gap)
  * contradict each other. */
 static void close_gaps(RefSheet *sheet)
 {
-    size_t size = 3 * (size_t)sheet->warp.nodes, count = 3 * ((size_t)sheet->holds - 1);
-    double *S = sm_alloc(count * count, sizeof *S), *gap = sm_alloc(count, sizeof *gap), trace = 0;
-    find_gaps(sheet, gap);
+    size_t size = 3 * (size_t)sheet->warp.nodes, count = 3 * (size_t)sheet->followers;
+    double *S = sheet->yield, *gap = sheet->gap, trace = 0;
+    find_gaps(sheet);
     for (size_t c = 0; c < count; c++) {
-        const RefSheetHold *hold = sheet->hold + 1 + c / 3;
-        const double *answer = hold->answer + c % 3 * size;
+        const double *answer = sheet->hold[sheet->follower[c / 3]].answer + c % 3 * size;
         for (size_t r = 0; r < count; r++) {
-            const double *slope = sheet->hold[1 + r / 3].slope + r % 3 * size;
+            const double *slope = sheet->hold[sheet->follower[r / 3]].slope + r % 3 * size;
+            S[r * count + c] = 0;
             for (size_t n = 0; n < size; n++) S[r * count + c] += slope[n] * answer[n];
         }
         trace += S[c * count + c];
@@ -391,14 +451,12 @@ static void close_gaps(RefSheet *sheet)
     for (size_t c = 0; c < count; c++) S[c * count + c] += 1e-12 * trace;
     ref_least_squares_solve((int)count, 0, S, gap);
     for (size_t c = 0; c < count; c++) {
-        const double *answer = sheet->hold[1 + c / 3].answer + c % 3 * size;
+        const double *answer = sheet->hold[sheet->follower[c / 3]].answer + c % 3 * size;
         for (size_t n = 0; n < size; n++) {
             sheet->steps.u[n] += gap[c] * answer[n];
             sheet->steps.v[n] += gap[c] * answer[n] / sheet->steps.h;
         }
     }
-    free(S);
-    free(gap);
 }
 
 static void take_pushes(RefSheet *sheet)
@@ -421,7 +479,7 @@ void ref_sheet_step(RefSheet *sheet)
         steps->speed[r] = (sheet->aim[r] - ref_rows_apply(&sheet->rows, r, steps->u)) / steps->h;
     memcpy(steps->force, warp->pulled, (size_t)warp->nodes * sizeof *warp->pulled);
     ref_steps_go(steps);
-    if (sheet->holds > 1) close_gaps(sheet);
+    if (sheet->followers) close_gaps(sheet);
     if (sheet->pushed) ref_warp_pull(&sheet->warp, CONST(sheet->weight));
     sheet->pushed = false;
     ref_warp_pose(&sheet->warp, CONST(steps->u));

@@ -30,8 +30,9 @@ typedef struct {
     double tangent[2][3]; /* at the first point */
     double pose[3][4];    /* where it is to be, by a turn and a shift of the place at rest */
     double turn[3];       /* the pose's rotation vector */
-    /* Of all but the first: how what tangents gain moves it beside that one, [nodes]; the slopes of
-     * its three coordinates by the parameters, [3][3 nodes], and what forces along these do. */
+    int lead;             /* the first hold of the same piece, maybe itself, */
+    /* beside which what tangents gain moves another one by so much, [nodes]; the slopes of that
+     * one's three coordinates by the parameters, [3][3 nodes], and what forces along these do. */
     double *reach, *slope, *answer;
     double (*flux)[2]; /* the first one's, at the warp's places */
 } RefSheetHold;
@@ -46,9 +47,11 @@ typedef struct {
     bool pushed;
     int holds;
     RefSheetHold *hold;
-    RefRows rows; /* of the steps: what the first hold binds, and shapes and turns of others */
-    double *aim;  /* [rows] their values */
-    int axis;     /* whose slopes are found after the next step */
+    int followers, *follower; /* holds that others lead */
+    double *gap, *yield; /* [3 followers]; and its square: how far a force at each moves each */
+    RefRows rows;        /* of the steps: what leading holds bind, and shapes and turns of others */
+    double *aim;         /* [rows] their values */
+    int axis;            /* whose slopes are found after the next step */
 } RefSheet;
 
 /* At rest and free. `sheet` must not move in memory. The caller frees. Errors: those of shell.h and
@@ -57,18 +60,19 @@ SmCode ref_sheet_create(const RefChart *chart, const RefSheetOptions *options, R
                         SmError *error);
 void ref_sheet_free(RefSheet *sheet);
 
-/* Other grips than before, where they are; the motion goes on. Two factorisations. Errors:
- * solver.h's; SM_INPUT, a point that the shell's functions do not cover. */
+/* Other grips than before, where they are; the motion goes on. Two factorisations; three where a
+ * piece is held twice. Errors, and what held goes on to: solver.h's; SM_INPUT, a point that the
+ * shell's functions do not cover. */
 SmCode ref_sheet_hold(RefSheet *sheet, int grips, const RefSheetGrip *grip, SmError *error);
 
 /* Where hold number k is to be after the next step: pose (x, 1), its left part a rotation, of x at
  * rest. */
 void ref_sheet_aim(RefSheet *sheet, int k, const double pose[3][4]);
 
-/* One step of h. Forces, and what the holds beyond the first need to be where they are to be, act
- * along the slopes that the surface's places have by the parameters: of one axis a step these are
- * found anew, with a solve for each hold. What is left of the holds after the step is spread over
- * the surface, which meets them to rounding, and is taken up in the next step. */
+/* One step of h. Forces, and what a piece's holds beyond its first need to be where they are to be,
+ * act along the slopes that the surface's places have by the parameters: of one axis a step these
+ * are found anew, with a solve for each hold. What is left of the holds after the step is spread
+ * over the surface, which meets them to rounding, and is taken up in the next step. */
 void ref_sheet_step(RefSheet *sheet);
 
 /* After u and v were changed from outside: where the surface is then, with all slopes. */

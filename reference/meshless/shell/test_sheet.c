@@ -94,6 +94,38 @@ TEST(a_strip_bent_by_right_angles_keeps_its_length)
     ref_sheet_free(&sheet);
 }
 
+/* A point out of all covers, and a damping that no step can be made with: what held goes on to. */
+TEST(a_hold_that_fails_changes_nothing)
+{
+    needs_solver();
+    RefChart chart = strip_chart();
+    static double end[2][3];
+    double beyond[1][3] = {{9, 9}}, pose[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0.02}, {0, 0, 1, 0.1}};
+    RefSheetGrip grip[2] = {grip_at(0, 0.1), grip_at(1, -0.1)}, uncovered = {1, beyond, true};
+    for (int fails = 0; fails < 2; fails++) {
+        RefSheet sheet;
+        SmError error = {0};
+        sheet_of(&chart, &strip, &sheet);
+        assert_int_equal(ref_sheet_hold(&sheet, 2, grip, &error), SM_OK);
+        for (int step = 0; step < 10; step++) {
+            if (step == 5 && fails) {
+                assert_int_equal(ref_sheet_hold(&sheet, 1, &uncovered, &error), SM_INPUT);
+                sheet.options.damping.mass_damping = -1;
+                assert_int_equal(ref_sheet_hold(&sheet, 1, grip, &error), SM_USAGE);
+                assert_int_equal(ref_sheet_hold(&sheet, 1, grip, NULL), SM_USAGE);
+                sheet.options.damping.mass_damping = strip.damping.mass_damping;
+            }
+            ref_sheet_aim(&sheet, 1, (const double(*)[4])pose);
+            ref_sheet_step(&sheet);
+        }
+        assert_int_equal(sheet.holds, 2);
+        surface_at(&sheet, 0.5, 0.1, end[fails]);
+        ref_sheet_free(&sheet);
+    }
+    assert_memory_equal(end[0], end[1], sizeof end[0]);
+    for (int k = 0; k < 2; k++) free(grip[k].theta);
+}
+
 /* A bowl: part of a sphere, around z all the way. */
 static const double R = 0.7;
 
@@ -282,7 +314,7 @@ TEST(points_are_carried)
     for (int s = 0; s < POINTS; s++)
         for (int d = 0; d < 3; d++)
             assert_true(fabs(now[s][d] - sm_dot(Rw + 3 * d, skin.rest[s]) - shift[d]) < 1e-5);
-    for (int s = 0; s < POINTS; s++) assert_true(fabs(skin.lift[s]) < 0.08);
+    for (int s = 0; s < POINTS; s++) assert_true(fabsf(skin.lift[s]) < 0.08);
     ref_skin_free(&skin);
     ref_sheet_free(&sheet);
 }

@@ -232,29 +232,39 @@ SmCode ref_warp_create(const RefShell *shell, RefWarp *warp, SmError *error)
     share_mass(shell, warp);
     warp->cut = shell->nodes.cut.pass;
     if (warp->cut) soften(warp);
-    return ref_warp_hold(warp, &(RefRows){0}, error);
+    SmCode code = ref_warp_hold(warp, &(RefRows){0}, error);
+    if (code != SM_OK) ref_warp_free(warp);
+    return code;
 }
 
-SmCode ref_warp_hold(RefWarp *warp, const RefRows *rows, SmError *error)
+SmCode ref_warp_solver(const RefWarp *warp, const RefRows *rows, RefSolver **solver, SmError *error)
 {
     RefRows pin = {0};
-    release(warp);
-    warp->rows = ref_rows_copy(rows);
-    warp->target = sm_alloc((size_t)rows->count, sizeof *warp->target);
-    warp->bound = sm_alloc((size_t)rows->count, sizeof *warp->bound);
-    for (long p = 0; p < warp->pieces; p++) warp->held[p] = false;
-    for (long e = 0; rows->count && e < rows->start[rows->count]; e++)
-        warp->held[warp->piece[rows->column[e]]] = true;
     if (rows->count == 0 &&
         !warp->cut) { /* any constant may be added: the first node's parameter stays */
         long at = ref_rows_begin(&pin, 1);
         pin.column[at] = 0;
         pin.value[at] = 1;
     }
-    SmCode code =
-        ref_solver_create(&warp->laplacian, 0, pin.count ? &pin : rows, &warp->solver, error);
+    SmCode code = ref_solver_create(&warp->laplacian, 0, pin.count ? &pin : rows, solver, error);
     ref_rows_free(&pin);
     return code;
+}
+
+SmCode ref_warp_hold(RefWarp *warp, const RefRows *rows, SmError *error)
+{
+    RefSolver *solver;
+    SmCode code = ref_warp_solver(warp, rows, &solver, error);
+    if (code != SM_OK) return code;
+    release(warp);
+    warp->solver = solver;
+    warp->rows = ref_rows_copy(rows);
+    warp->target = sm_alloc((size_t)rows->count, sizeof *warp->target);
+    warp->bound = sm_alloc((size_t)rows->count, sizeof *warp->bound);
+    for (long p = 0; p < warp->pieces; p++) warp->held[p] = false;
+    for (long e = 0; rows->count && e < rows->start[rows->count]; e++)
+        warp->held[warp->piece[rows->column[e]]] = true;
+    return SM_OK;
 }
 
 /* ---- moved */

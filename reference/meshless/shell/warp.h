@@ -69,13 +69,19 @@ typedef struct {
 /* The parameters of a cell's place number p: the middles of its quarters. */
 void ref_warp_place_at(const double middle[2], const double edge[2], int p, double theta[3]);
 
-/* Of a shell at rest that nothing holds. The caller frees. Errors: solver.h's. */
+/* Of a shell at rest that nothing holds. The caller frees. Errors, and nothing to free: solver.h's.
+ */
 SmCode ref_warp_create(const RefShell *shell, RefWarp *warp, SmError *error);
 void ref_warp_free(RefWarp *warp);
 
 /* Holds it by these rows of the nodes, copied; none: frees it. Targets are zero then. One
- * factorisation. Errors: solver.h's. */
+ * factorisation. Errors, and what held goes on to: solver.h's. */
 SmCode ref_warp_hold(RefWarp *warp, const RefRows *rows, SmError *error);
+
+/* The Laplacian under these rows, which hold nothing yet; the caller's to destroy. Errors:
+ * solver.h's. */
+SmCode ref_warp_solver(const RefWarp *warp, const RefRows *rows, RefSolver **solver,
+                       SmError *error);
 
 /* Forces at the nodes, [nodes][3], whose work `pulled` is the slope of from the next pose on. Three
  * solves. */
