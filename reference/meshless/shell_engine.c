@@ -32,6 +32,7 @@ struct SmEngine {
     int (*triangle)[3]; /* the mesh's, of one that breaks */
     bool drawn;         /* its surface was taken once */
     double pressure, pulse, time;
+    RefShape shape;  /* what blow() works in */
     double outwards; /* 1 or -1: the way normals look */
 };
 
@@ -47,6 +48,7 @@ static void shell_destroy(SmEngine *engine)
     ref_sheet_free(&engine->body.sheet);
     ref_surface_map_free(&engine->body.map);
     sm_handles_free(&engine->handles);
+    ref_shape_free(&engine->shape);
     sm_free_all(engine->triangle, engine->body.carried, engine->place, engine->rest, engine->before,
                 engine->held, engine);
 }
@@ -157,6 +159,7 @@ static void make_particles(const SmMesh *mesh, SmEngine *engine)
                         CONST(engine->rest), &body->torn);
     }
     engine->outwards = outwards(&body->sheet.warp);
+    engine->shape = ref_shape_create(&body->sheet.shell.nodes);
     carry(engine);
     memcpy(engine->before, body->carried, count * sizeof *engine->before);
     body->skin_seconds = sm_now() - start;
@@ -187,7 +190,7 @@ static void blow(SmEngine *engine)
 {
     RefSheet *sheet = &engine->body.sheet;
     const RefWarp *warp = &sheet->warp;
-    RefShape shape = ref_shape_create(&sheet->shell.nodes);
+    RefShape *shape = &engine->shape;
     for (long c = 0, leaf = 0; c < sheet->shell.tree.count; c++) {
         const RefCell *cell = sheet->shell.tree.cell + c;
         double middle[2], edge[2];
@@ -197,17 +200,16 @@ static void blow(SmEngine *engine)
             const RefWarpPlace *place = warp->place + REF_WARP_PLACES * leaf + p;
             double theta[3];
             ref_warp_place_at(middle, edge, p, theta);
-            ref_shell_shape(&sheet->shell, theta, &shape);
-            for (int n = 0; n < shape.count; n++)
+            ref_shell_shape(&sheet->shell, theta, shape);
+            for (int n = 0; n < shape->count; n++)
                 for (int d = 0; d < 3; d++)
-                    sheet->impulse[shape.node[n]][d] += engine->pressure * sheet->options.h *
-                                                        place->area * shape.value[n] *
-                                                        place->normal[d] * engine->outwards;
+                    sheet->impulse[shape->node[n]][d] += engine->pressure * sheet->options.h *
+                                                         place->area * shape->value[n] *
+                                                         place->normal[d] * engine->outwards;
         }
         leaf++;
     }
     sheet->pushed = true;
-    ref_shape_free(&shape);
 }
 
 static void bind(SmEngine *engine);
@@ -220,6 +222,8 @@ static void follow_cracks(SmEngine *engine)
     ref_foot_renew(&body->sheet.shell, &body->sheet.warp, (const double(*)[2])body->map.theta,
                    CONST(engine->rest), again, &body->breaking->cracked, &body->skin, &body->loose);
     body->carry_seconds = sm_now() - start;
+    ref_shape_free(&engine->shape);
+    engine->shape = ref_shape_create(&body->sheet.shell.nodes);
     if (engine->handles.count) bind(engine);
 }
 
@@ -306,8 +310,9 @@ static double cell_length(const RefSheet *sheet)
     return sqrt(area / (double)sheet->warp.cells);
 }
 
-/* A handle's points, the one nearest to their middle first; whether they are all in a line. */
-static bool choose_points(const SmEngine *engine, const SmHandle *handle, RefSheetGrip *grip)
+/* A handle's points that the shell's functions cover, the one nearest to their middle first;
+ * whether they are all in a line. */
+static bool choose_points(SmEngine *engine, const SmHandle *handle, RefSheetGrip *grip)
 {
     double(*x)[3] = sm_alloc((size_t)handle->count, sizeof *x), least = INFINITY;
     for (long k = 0; k < handle->count; k++)
@@ -327,17 +332,21 @@ static bool choose_points(const SmEngine *engine, const SmHandle *handle, RefShe
     *grip = (RefSheetGrip){.theta = sm_alloc((size_t)chosen.count + 1, sizeof *grip->theta)};
     for (int c = -1; c < chosen.count; c++) {
         long point = c < 0 ? nearest : chosen.point[c];
-        if (c >= 0 && point == nearest) continue;
-        memcpy(grip->theta[grip->count++], engine->body.map.theta[handle->particle[point]],
-               sizeof *engine->body.map.theta);
+        const double *theta = engine->body.map.theta[handle->particle[point]];
+        const double at[3] = {theta[0], theta[1]};
+        if ((c >= 0 && point == nearest) ||
+            !ref_shell_shape(&engine->body.sheet.shell, at, &engine->shape))
+            continue;
+        memcpy(grip->theta[grip->count++], at, sizeof at);
     }
-    bool line = !chosen.rigid;
+    bool line = !chosen.rigid || grip->count < 3;
     ref_grip_free(&chosen);
     free(x);
     return line;
 }
 
-/* Other holds than before, where the surface is; the motion goes on. */
+/* Other holds than before, where the surface is; the motion goes on. Where they cannot be made,
+ * none. */
 static void bind(SmEngine *engine)
 {
     int count = 0, handles = engine->handles.count;
@@ -361,8 +370,10 @@ static void bind(SmEngine *engine)
             grip[count] = all;
         count += held->count;
     }
-    if (ref_sheet_hold(&engine->body.sheet, count, grip, NULL) != SM_OK)
+    if (ref_sheet_hold(&engine->body.sheet, count, grip, NULL) != SM_OK) {
+        ref_sheet_hold(&engine->body.sheet, 0, NULL, NULL);
         for (int n = 0; n < handles; n++) engine->held[n].count = 0;
+    }
     for (int k = 0; k < count; k++) free(grip[k].theta);
     free(grip);
 }

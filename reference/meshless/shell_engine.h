@@ -12,6 +12,7 @@
  *
  * A handle holds the surface at some of its particles, apart from each other by a cell at least,
  * and turns its tangents in their middle; one whose particles are all in a line holds places alone.
+ * Particles where functions are not defined hold nothing; where holds cannot be made, nothing does.
  */
 #ifndef REF_SHELL_ENGINE_H
 #define REF_SHELL_ENGINE_H
