@@ -232,19 +232,18 @@ static void shell_step(SmEngine *engine, SmLaps *laps)
     RefShellBody *body = &engine->body;
     bool changed = false;
     body->carry_seconds = 0;
-    if (body->broke) return;
+    if (body->broke) {
+        memcpy(engine->before, body->carried, (size_t)engine->count * sizeof *engine->before);
+        return;
+    }
     if (engine->pressure != 0 && engine->time < engine->pulse) blow(engine);
     engine->time += body->sheet.options.h;
     if (body->breaking)
         body->broke = ref_breaking_step(body->breaking, &changed, NULL) != SM_OK;
     else
         ref_sheet_step(&body->sheet);
-    if (changed && !body->broke) follow_cracks(engine);
+    if (changed) follow_cracks(engine);
     sm_lap(laps, SM_SHAPE_MATCHING);
-    if (body->broke) {
-        memcpy(engine->before, body->carried, (size_t)engine->count * sizeof *engine->before);
-        return;
-    }
     double(*now)[3] = engine->before;
     engine->before = body->carried;
     body->carried = now;
@@ -400,16 +399,15 @@ static void draw(SmEngine *engine, bool rest, double (*point)[3])
     double(*outer)[3] = sm_alloc((size_t)engine->count, sizeof *outer);
     for (long p = 0; p < engine->count; p++)
         memcpy(outer[p], rest ? engine->rest[p] : body->carried[engine->place[p]], sizeof *outer);
-    ref_torn_place(&body->torn, &body->breaking->cracked,
-                   rest || body->broke ? NULL : &body->sheet.warp, CONST(outer),
-                   body->sheet.options.shell.thickness, point);
+    ref_torn_place(&body->torn, &body->breaking->cracked, rest ? NULL : &body->sheet.warp,
+                   CONST(outer), body->sheet.options.shell.thickness, point);
     free(outer);
 }
 
 static bool shell_surface(SmEngine *engine, SmMesh *surface)
 {
     RefShellBody *body = &engine->body;
-    if (!body->breaking || (engine->drawn && body->broke)) return false;
+    if (!body->breaking) return false;
     bool changed = ref_torn_update(&body->torn, &body->breaking->cracked);
     if (engine->drawn && !changed) return false;
     engine->drawn = true;

@@ -61,6 +61,7 @@ SmCode ref_breaking_update(RefBreaking *breaking, SmError *error)
     double *rest[3] = {breaking->rest[0], breaking->rest[1], NULL};
     RefCrackedFields fields = {ref_steps_mass_share(&sheet->options.damping, sheet->options.h), 3,
                                field, rest};
+    RefCrackedSaved saved = ref_cracked_save(&breaking->cracked);
     ref_cracked_update(&breaking->cracked, &fields);
     double middle = sm_now();
     breaking->rest[0] = rest[0];
@@ -69,7 +70,9 @@ SmCode ref_breaking_update(RefBreaking *breaking, SmError *error)
     if (code == SM_OK) {
         project(breaking);
         ref_sheet_settle(sheet);
-    }
+        ref_cracked_saved_free(&saved);
+    } else
+        ref_cracked_restore(&breaking->cracked, &saved);
     breaking->seconds.update = middle - start;
     breaking->seconds.solver = sm_now() - middle;
     sm_free_all(field[0], field[1], field[2], rest[2]);
@@ -84,5 +87,7 @@ SmCode ref_breaking_step(RefBreaking *breaking, bool *changed, SmError *error)
     *changed = ref_fracture_grow(&breaking->cracked, &breaking->options,
                                  (const double(*)[3])breaking->sheet->steps.u) > 0;
     breaking->seconds = (RefBreakingSeconds){middle - start, sm_now() - middle, 0, 0};
-    return *changed ? ref_breaking_update(breaking, error) : SM_OK;
+    SmCode code = *changed ? ref_breaking_update(breaking, error) : SM_OK;
+    *changed = *changed && code == SM_OK;
+    return code;
 }

@@ -32,10 +32,11 @@ SmCode ref_breaking_create(RefSheet *sheet, const RefCrackedOptions *cracked,
 void ref_breaking_free(RefBreaking *breaking);
 
 /* One step, and what breaks by it. `changed` receives whether cracks did: nothing is held then.
- * Errors: solver.h's. */
+ * Errors: solver.h's; the step was made then, but cracks are as they were before it. */
 SmCode ref_breaking_step(RefBreaking *breaking, bool *changed, SmError *error);
 
-/* What is left to be done after cracks were grown by the caller. Errors: as above. */
+/* What is left to be done after cracks were grown by the caller. Errors: as above, and what they
+ * were grown by is gone. */
 SmCode ref_breaking_update(RefBreaking *breaking, SmError *error);
 
 #endif

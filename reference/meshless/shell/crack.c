@@ -33,7 +33,7 @@ void ref_cracks_create(const RefChart *chart, double margin, RefCracks *cracks)
 
 void ref_cracks_free(RefCracks *cracks)
 {
-    sm_free_all(cracks->near, cracks->piece, cracks->arm);
+    sm_free_all(cracks->near, cracks->piece, cracks->arm, cracks->settled);
     *cracks = (RefCracks){.chart = NULL};
 }
 
@@ -349,6 +349,28 @@ void ref_cracks_settle(RefCracks *cracks)
 {
     cracks->now++;
     for (long p = 0; p < cracks->pieces; p++) cracks->piece[p].before = cracks->piece[p].ahead;
+    cracks->settled_pieces = cracks->pieces;
+    cracks->settled_arms = cracks->arms;
+    sm_make_room(cracks->settled, cracks->settled_room, cracks->arms);
+    if (cracks->arms)
+        memcpy(cracks->settled, cracks->arm, (size_t)cracks->arms * sizeof *cracks->arm);
+}
+
+RefCracks ref_cracks_settled(const RefCracks *cracks)
+{
+    RefCracks copy;
+    size_t pieces = (size_t)cracks->settled_pieces, arms = (size_t)cracks->settled_arms;
+    ref_cracks_create(cracks->chart, cracks->margin, &copy);
+    copy.pieces = copy.piece_room = cracks->settled_pieces;
+    copy.arms = copy.arm_room = cracks->settled_arms;
+    copy.piece = sm_alloc(pieces, sizeof *copy.piece);
+    copy.arm = sm_alloc(arms, sizeof *copy.arm);
+    if (pieces) memcpy(copy.piece, cracks->piece, pieces * sizeof *copy.piece);
+    if (arms) memcpy(copy.arm, cracks->settled, arms * sizeof *copy.arm);
+    for (size_t p = 0; p < pieces; p++) copy.piece[p].ahead = copy.piece[p].before;
+    copy.now = cracks->now;
+    ref_cracks_settle(&copy);
+    return copy;
 }
 
 double ref_cracks_distance(const RefCracks *cracks, const double x[2], double far)

@@ -36,9 +36,11 @@ typedef struct {
     const RefChart *chart; /* the caller's */
     double margin;         /* the largest reach of a cover */
     long pieces, piece_room, arms, arm_room;
-    RefCrackPiece *piece;   /* [pieces] */
-    RefCrackArm *arm;       /* [arms] */
-    int now;                /* counts settlements */
+    RefCrackPiece *piece; /* [pieces] */
+    RefCrackArm *arm;     /* [arms] */
+    int now;              /* counts settlements */
+    long settled_pieces, settled_arms, settled_room;
+    RefCrackArm *settled;   /* [settled_arms] the arms at the last one */
     double low[2], high[2]; /* private: a box, and all pieces whose boxes touch it */
     long near_count, near_room;
     int *near;
@@ -86,6 +88,9 @@ bool ref_cracks_stir(const RefCracks *cracks, const double low[2], const double 
 
 /* All changes become what was before. O(pieces). */
 void ref_cracks_settle(RefCracks *cracks);
+
+/* The cracks without the changes that are not settled yet. The caller frees. O(pieces). */
+RefCracks ref_cracks_settled(const RefCracks *cracks);
 
 /* How far the nearest piece is, at most `far`. */
 double ref_cracks_distance(const RefCracks *cracks, const double x[2], double far);

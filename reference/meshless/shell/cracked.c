@@ -633,3 +633,49 @@ bool ref_cracked_update(RefCracked *cracked, RefCrackedFields *fields)
     sm_free_all(fresh, touched);
     return others;
 }
+
+RefCrackedSaved ref_cracked_save(const RefCracked *cracked)
+{
+    const RefShell *shell = cracked->shell;
+    size_t cells = (size_t)shell->tree.count;
+    RefCrackedSaved saved = {.cells = shell->tree.count,
+                             .leaves = shell->tree.leaves,
+                             .tree = copy_of(shell->tree.cell, cells, sizeof *shell->tree.cell),
+                             .cell = copy_of(cracked->cell, cells, sizeof *cracked->cell),
+                             .nodes = copy_nodes(&shell->nodes),
+                             .X = copy_of(shell->X, (size_t)shell->nodes.count, sizeof *shell->X),
+                             .cracks = ref_cracks_settled(&cracked->cracks)};
+    for (size_t c = 0; c < cells; c++) {
+        saved.cell[c].samples = (RefSamples){.count = 0};
+        saved.cell[c].element = (RefElement){.count = 0};
+    }
+    return saved;
+}
+
+void ref_cracked_saved_free(RefCrackedSaved *saved)
+{
+    ref_nodes_free(&saved->nodes);
+    ref_cracks_free(&saved->cracks);
+    sm_free_all(saved->tree, saved->cell, saved->X);
+    *saved = (RefCrackedSaved){.cells = 0};
+}
+
+void ref_cracked_restore(RefCracked *cracked, RefCrackedSaved *saved)
+{
+    RefShell *shell = cracked->shell;
+    for (long c = 0; c < shell->tree.count; c++) forget_cell(cracked->cell + c);
+    memcpy(shell->tree.cell, saved->tree, (size_t)saved->cells * sizeof *saved->tree);
+    memcpy(cracked->cell, saved->cell, (size_t)saved->cells * sizeof *saved->cell);
+    shell->tree.count = saved->cells;
+    shell->tree.leaves = saved->leaves;
+    ref_nodes_free(&shell->nodes);
+    shell->nodes = saved->nodes;
+    free(shell->X);
+    shell->X = saved->X;
+    ref_cracks_free(&cracked->cracks);
+    cracked->cracks = saved->cracks;
+    ref_element_rows_free(&cracked->rows);
+    ref_cracked_remake(cracked);
+    sm_free_all(saved->tree, saved->cell);
+    *saved = (RefCrackedSaved){.cells = 0};
+}

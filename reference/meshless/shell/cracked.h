@@ -76,6 +76,23 @@ typedef struct {
  * Returns whether nodes are others than before. */
 bool ref_cracked_update(RefCracked *cracked, RefCrackedFields *fields);
 
+/* What an update changes. */
+typedef struct {
+    long cells, leaves;
+    RefCell *tree;        /* [cells] */
+    RefCrackedCell *cell; /* [cells] without samples and elements */
+    RefNodes nodes;
+    double (*X)[3];
+    RefCracks cracks;
+} RefCrackedSaved;
+
+/* Taken after cracks were grown and before the update, to go back to the shell without that growth.
+ * ref_cracked_restore() frees it, or ref_cracked_saved_free(). Going back makes all again, with the
+ * same bits. */
+RefCrackedSaved ref_cracked_save(const RefCracked *cracked);
+void ref_cracked_restore(RefCracked *cracked, RefCrackedSaved *saved);
+void ref_cracked_saved_free(RefCrackedSaved *saved);
+
 /* The functions at a place as `eye` beside it sees it, which may be on the other side of a crack;
  * false where no sample is seen. */
 bool ref_cracked_side(const RefCracked *cracked, const double theta[2], const double eye[2],

@@ -86,3 +86,48 @@ TEST(pieces_are_held_each_for_itself)
     }
     assert_true(energy[1] < 0.01 * energy[0]); /* pieces are turned, and nothing is bent */
 }
+
+/* Two strips are torn from a notch. In one of them a crack cannot be followed at first, as no step
+ * can be made with its damping: it goes on as it was, and later as if that had not been. */
+TEST(what_cannot_be_followed_has_not_happened)
+{
+    needs_solver();
+    static Strip strip[2];
+    bool changed[2], again;
+    for (int k = 0; k < 2; k++) {
+        strip_create(20, strip + k);
+        cut(strip + k, 1.9, 0.3);
+        double(*v)[3] = (double(*)[3])strip[k].sheet.steps.v;
+        for (long n = 0; n < strip[k].sheet.warp.nodes; n++)
+            v[n][0] = strip[k].sheet.warp.X[n][0] - 2;
+    }
+    const RefShell *shell = &strip[1].sheet.shell;
+    RefDamping *damping = &strip[1].sheet.options.damping;
+    int failures = 0, changes = 0;
+    for (int n = 0; n < 20; n++) {
+        long nodes = shell->nodes.count, arms = strip[1].breaking.cracked.cracks.arms;
+        damping->mass_damping = n % 2 ? 1 : -1;
+        SmCode code = ref_breaking_step(&strip[1].breaking, changed + 1, NULL);
+        if (code != SM_OK) {
+            failures++;
+            assert_false(changed[1]);
+            assert_int_equal(shell->nodes.count, nodes);
+            assert_int_equal(strip[1].breaking.cracked.cracks.arms, arms);
+            damping->mass_damping = 1;
+            again = ref_fracture_grow(&strip[1].breaking.cracked, &strip[1].breaking.options,
+                                      (const double(*)[3])strip[1].sheet.steps.u) > 0;
+            assert_true(again);
+            assert_int_equal(ref_breaking_update(&strip[1].breaking, NULL), SM_OK);
+            changed[1] = true;
+        }
+        assert_int_equal(ref_breaking_step(&strip[0].breaking, changed, NULL), SM_OK);
+        assert_int_equal(changed[0], changed[1]);
+        changes += changed[0];
+        assert_int_equal(shell->nodes.count, strip[0].sheet.shell.nodes.count);
+        assert_memory_equal(strip[0].sheet.warp.moved, strip[1].sheet.warp.moved,
+                            (size_t)shell->nodes.count * sizeof(double[3]));
+    }
+    print_message("%d changes, %d failures, %ld nodes\n", changes, failures, shell->nodes.count);
+    assert_true(failures > 2 && changes > failures);
+    for (int k = 0; k < 2; k++) strip_free(strip + k);
+}
