@@ -226,6 +226,15 @@ class Refusals(unittest.TestCase):
             self.assertIn("ImportError", said.splitlines()[-1])
             self.assertIn(text, said.splitlines()[-1])
 
+    def test_without_a_name_the_loader_has_the_library(self):
+        clean = {name: value for name, value in os.environ.items() if name != "SHAPEBENCH_LIBRARY"}
+        soname = pathlib.Path(LIBRARY).with_name(f"libshapebench.so.{sb.__version__.partition('.')[0]}")
+        self.assertTrue(soname.is_file())
+        said = subprocess.run([sys.executable, "-c", "import shapebench; print(shapebench.engines()[0])"], text=True,
+                              capture_output=True, check=False, env={**clean, "LD_LIBRARY_PATH": str(soname.parent),
+                                                                     "PYTHONPATH": str(HERE)})
+        self.assertEqual(said.stdout, "fastlsm\n", said.stderr)
+
     def test_a_needed_package_is_named(self):
         made = "libnothing.so.5: cannot open shared object file: No such file or directory"
         with unittest.mock.patch.object(ctypes, "CDLL", side_effect=OSError(made)):
@@ -381,6 +390,17 @@ class Bodies(unittest.TestCase):
                 self.assertEqual(len(body.surface()), len(body.surface_rest()))
                 self.assertLess(body.surface_triangles().max(), len(body.surface()))
                 self.assertEqual(len(body.positions()), body.counts().particles)
+
+    def test_the_surface_parts_where_links_break(self):
+        mesh = sb.Mesh.shape("beam")
+        with sb.Body(sb.Voxels(mesh, particles=300), mesh, strain_limit=1.2) as body:
+            before = len(body.surface())
+            pull = np.sign(body.rest()[:, :1] - body.rest()[:, 0].mean()) * (1, 0, 0)
+            body.set_velocities(20 * pull)
+            body.step(3)
+            self.assertGreater(body.counts().broken, 0)
+            self.assertGreater(len(body.surface()), before)
+            self.assertEqual(len(body.surface_triangles()), body.counts().surface_triangles)
 
     def test_a_blade_cuts_what_it_sweeps_over(self):
         with block(6, 6, 6, cuttable=True) as body:

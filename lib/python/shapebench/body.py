@@ -250,7 +250,9 @@ class Body(Made):
 
     def step(self, steps: int = 1) -> None:
         """Steps of h seconds (fastlsm eqs. 1 and 2), all in one call. 20 to 200 ns a particle, step and thread."""
-        self._call("sb_body_step", face.whole(steps, "steps"))
+        with self._lock:
+            self._sizes = None  # links that break part the surface, too
+            self._call("sb_body_step", face.whole(steps, "steps"))
 
     def counts(self) -> Counts:
         """What the body is and has done."""
@@ -260,9 +262,10 @@ class Body(Made):
             return Counts(**face.filled("sb_body_counts", "sb_body_count", self._handle))
 
     def _size(self, member: str) -> int:
-        if self._sizes is None or self._handle is None:
-            self._sizes = self.counts()
-        return int(getattr(self._sizes, member))
+        with self._lock:
+            if self._sizes is None or self._handle is None:
+                self._sizes = self.counts()
+            return int(getattr(self._sizes, member))
 
     @property
     def particle_count(self) -> int:

@@ -106,7 +106,8 @@ def library() -> Any:
     """The library, loaded by the first call: that of SHAPEBENCH_LIBRARY, else the one beside this file, which an
     installation has, else the loader's."""
     own = HERE / "libshapebench.so"
-    return load(os.environ.get("SHAPEBENCH_LIBRARY") or (str(own) if own.exists() else "libshapebench.so.0"))
+    loaders = f"libshapebench.so.{header.constant['SHAPEBENCH_VERSION_MAJOR']}"
+    return load(os.environ.get("SHAPEBENCH_LIBRARY") or (str(own) if own.exists() else loaders))
 
 
 def call(name: str, *arguments: Any) -> None:
