@@ -4,6 +4,7 @@
 #include "../../lib/system/clock.h"
 #include "../../lib/test_frame.h"
 #include "../../reference/brute.h"
+#include "../engines.h"
 #include "../play/runner.h"
 #include "../system/statistic.h"
 #include "measure.h"
@@ -53,6 +54,31 @@ TEST(a_right_engine_is_valid_and_timed)
     assert_true(fabs(row.ns_per_particle_step - 1e6 * row.total_ms / 64) <
                 1e-6 * row.total_ms * 1e6);
     bench_row_free(&row);
+}
+
+/* Links that may break need not; a scene that cuts has to. */
+TEST(only_what_is_to_change_must)
+{
+    static const struct {
+        const char *more, *reason;
+    } scenes[] = {
+        {"strain_limit = 9;", ""},
+        {"cuts = ({base_from = [9.0, 0.0, 0.0]; tip_from = [9.0, 1.0, 0.0];"
+         "base_to = [9.0, 0.0, 1.0]; tip_to = [9.0, 1.0, 1.0]; stop = 0.1;});",
+         "no frame has changed anything"},
+    };
+    const SmEngineType *type;
+    assert_int_equal(bench_engine_find("fastlsm", NULL, &type, NULL), SM_OK);
+    for (size_t i = 0; i < 2; i++) {
+        char of[512];
+        BenchRow row;
+        snprintf(of, sizeof of, "%s frames = 4; steps_per_frame = 2; %s", text, scenes[i].more);
+        assert_int_equal(measure_text(of, type, &row), SM_OK);
+        assert_string_equal(row.reason, scenes[i].reason);
+        assert_true(row.valid == !row.reason[0] && row.change.frames == 4);
+        assert_int_equal(row.change.changed, 0);
+        bench_row_free(&row);
+    }
 }
 
 /* The brute engine with a goal that is off: what `wrong` does to it. */

@@ -42,7 +42,7 @@ static SmCode check(const BenchPlayback *play, const BenchRunner *runner, BenchR
     if (record && bench_playback_changes(play))
         return sm_fail(
             error, SM_USAGE,
-            "--record stores bodies that stay as they are, and %s cuts, breaks or refines its "
+            "--record stores bodies that stay as they are, and %s may cut, break or refine its "
             "own: leave --record out, and the surface is still written",
             runner->scene->file);
     return SM_OK;
