@@ -1,5 +1,6 @@
 #include "side.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -99,11 +100,19 @@ bool view_side_is_whole(const ViewSide *side)
     return true;
 }
 
+/* 0: it plays no elastic body. */
+static long elastic_nodes(const ViewSide *side)
+{
+    const RefElastic *elastic = view_side_elastic(side);
+    return elastic ? elastic->motion.nodes : 0;
+}
+
 bool view_side_is_like(const ViewSide *side, const ViewSide *other)
 {
     if (view_side_is_there(side) != view_side_is_there(other)) return false;
     if (side->scene.instances != other->scene.instances) return false;
     if (strcmp(side->scene.engine, other->scene.engine) != 0) return false;
+    if (elastic_nodes(side) != elastic_nodes(other)) return false;
     const ViewSide *both[] = {side, other};
     for (int s = 0; s < 2; s++) /* bodies at rest are all alike */
         for (int g = 0; g < both[s]->play.count; g++)
@@ -138,6 +147,7 @@ static void copy_field(ViewSide *side, const ViewSide *from, SmField field)
 
 void view_side_go_on(ViewSide *side, const ViewSide *from)
 {
+    assert(view_side_is_like(side, from));
     if (view_side_elastic(side)) {
         ref_meshless_go_on(side->play.group[0].runner.engine, from->play.group[0].runner.engine);
     } else {

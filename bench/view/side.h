@@ -48,7 +48,7 @@ ViewSide *view_side_of(int number);
 /* May another side go on where this one is? Not where material has been cut or has broken. */
 bool view_side_is_whole(const ViewSide *side);
 
-/* Has it bodies of as many particles as another side, of the same engine? */
+/* Has it bodies of as many particles and nodes as another side, of the same engine? */
 bool view_side_is_like(const ViewSide *side, const ViewSide *other);
 
 /* Positions, velocities and time of another side that it is like. */

@@ -71,11 +71,11 @@ void view_stored_key(const BenchScene *scene, char key[REF_STORED_KEY])
     const RefMeshlessOptions *options = &scene->meshless;
     const char *slash = strrchr(scene->mesh, '/');
     snprintf(key, REF_STORED_KEY,
-             "mesh %.256s, points %ld, nodes %ld, uniform %d, modes %d, poisson %.9g, metre %.9g, "
-             "handles %d: %016llx",
+             "mesh %.256s, points %ld, nodes %ld, uniform %d, modes %d, basis %d, poisson %.9g, "
+             "metre %.9g, handles %d: %016llx",
              slash ? slash + 1 : scene->mesh, options->points, options->nodes, options->uniform,
-             options->modes, options->material.poisson, scene->metre, scene->handle_count,
-             handles_of(scene));
+             options->modes, options->basis, options->material.poisson, scene->metre,
+             scene->handle_count, handles_of(scene));
 }
 
 const RefStored *view_stored_find(const BenchScene *scene, const SmMesh *mesh)

@@ -506,6 +506,26 @@ TEST(hands_move_a_stored_body)
     assert_int_equal(view_may_cut(1), 0);
 }
 
+/* With other nodes it begins anew: its state is of as many as it had. */
+TEST(a_body_of_other_nodes_begins_anew)
+{
+    needs_solver();
+    char other[2048];
+    store_bar();
+    open_scene(bar);
+    for (int side = 0; side < VIEW_SIDES; side++) view_step(side, 20);
+    double nodes = view_figure(1, VIEW_PARTICLES);
+    assert_int_equal(opened(bar, 1), 0);
+    assert_true(view_figure(1, VIEW_STEPS) == 20);
+    snprintf(other, sizeof other, "%s", bar);
+    memcpy(strstr(other, "nodes = 150"), "nodes = 400", strlen("nodes = 400"));
+    assert_int_equal(opened(other, 1), 0);
+    assert_string_equal(view_absent(1), "");
+    assert_true(view_figure(1, VIEW_PARTICLES) > nodes);
+    for (int side = 0; side < VIEW_SIDES; side++)
+        assert_true(view_figure(side, VIEW_STEPS) == 0 && view_figure(side, VIEW_TIME) == 0);
+}
+
 /* Hands that pull at random, to many times its size and against each other, and let go: it stays
  * finite, and comes back. */
 TEST(a_stored_body_bears_wild_hands)
@@ -538,7 +558,7 @@ TEST(a_stored_body_bears_wild_hands)
         fail_msg("%g cells from rest", sqrt(sm_square_between(rest, to)) / cell);
 }
 
-/* Of other handles or another mesh no body is stored; a damaged one is refused. */
+/* Of other handles, another basis or another mesh no body is stored; a damaged one is refused. */
 TEST(other_bodies_are_not_taken_for_it)
 {
     needs_solver();
@@ -552,6 +572,9 @@ TEST(other_bodies_are_not_taken_for_it)
     scene.handle[0].select.high[0] = 0.2;
     assert_null(view_stored_find(&scene, &mesh));
     scene.handle[0].select.high[0] = 0.1;
+    scene.meshless.basis = REF_MESHLESS_QUADRATIC;
+    assert_null(view_stored_find(&scene, &mesh));
+    scene.meshless.basis = REF_MESHLESS_LINEAR;
     for (long v = 0; v < mesh.vertex_count; v++) mesh.position[v][0] *= 1.5;
     assert_null(view_stored_find(&scene, &mesh));
     sm_mesh_free(&mesh);

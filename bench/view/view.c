@@ -297,7 +297,9 @@ double view_paper_percent(int number, int stage)
 {
     const ViewSide *side = view_side_of(number);
     if (!side || stage < 0 || stage >= SM_STAGES) return NAN;
-    const RefPaperRow *row = ref_paper_find(side->scene.engine, side->scene.row);
+    const BenchScene *scene = &side->scene;
+    bool own = strcmp(scene->paper, scene->engine) == 0;
+    const RefPaperRow *row = own ? ref_paper_find(scene->paper, scene->row) : NULL;
     return row ? row->stage_percent[stage].value : NAN;
 }
 
