@@ -9,6 +9,7 @@
 
 #include "../engines.h"
 #include "../play/runner.h"
+#include "../store/draft.h"
 #include "stored_bodies.h"
 
 static int say(const SmError *error)
@@ -17,17 +18,12 @@ static int say(const SmError *error)
     return error->code;
 }
 
-static SmCode write_file(const char *path, const RefStored *stored, SmError *error)
+static void print_body(FILE *file, const void *what)
 {
     size_t size;
-    unsigned char *bytes = ref_stored_write(stored, &size);
-    FILE *file = fopen(path, "wb");
-    bool written = file && fwrite(bytes, 1, size, file) == size;
-    if (file) written = !fclose(file) && written;
+    unsigned char *bytes = ref_stored_write(what, &size);
+    fwrite(bytes, 1, size, file);
     free(bytes);
-    if (written) return SM_OK;
-    return sm_fail(error, SM_OUTPUT, "cannot write %s: name a file in a folder that is there",
-                   path);
 }
 
 int main(int count, char **argument)
@@ -58,7 +54,7 @@ int main(int count, char **argument)
     if (!code) {
         view_stored_key(&scene, key);
         ref_stored_of(key, ref_meshless_elastic(runner.engine), &stored);
-        code = write_file(argument[2], &stored, &error);
+        code = bench_draft_write(argument[2], print_body, &stored, &error);
         ref_stored_free(&stored);
         bench_runner_free(&runner);
     }
