@@ -70,6 +70,7 @@ static void check_counts(const BenchCheck *check, const BenchRunner *runner, Ben
     if (counts.particles != particles)
         bench_row_invalidate(row, "the engine has %.0f particles, its twin %.0f",
                              (double)counts.particles, (double)particles);
+    if (check->parted > 0) bench_row_invalidate(row, "links broken at rest: %ld", check->parted);
     if (counts.broken == 0 && counts.regions != check->unique)
         bench_row_invalidate(row, "the engine has %.0f unique regions, brute force %.0f",
                              (double)counts.regions, (double)check->unique);

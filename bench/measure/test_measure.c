@@ -81,6 +81,33 @@ TEST(only_what_is_to_change_must)
     }
 }
 
+static const SmEngineType *whole;
+
+static SmCode broken_create(const SmVoxels *voxels, const SmEngineParams *params, SmEngine **engine,
+                            SmError *error)
+{
+    int link[2];
+    SmCode code = whole->create(voxels, params, engine, error);
+    if (code) return code;
+    whole->links(*engine, &link, 1);
+    return whole->break_links(*engine, 1, (const int(*)[2]) & link, error);
+}
+
+/* What may break is all there at rest. */
+TEST(a_link_that_is_missing_at_rest_is_invalid)
+{
+    BenchRow row;
+    char of[512];
+    assert_int_equal(bench_engine_find("fastlsm", NULL, &whole, NULL), SM_OK);
+    SmEngineType type = *whole;
+    type.create = broken_create;
+    snprintf(of, sizeof of, "%s frames = 2; strain_limit = 9;", text);
+    assert_int_equal(measure_text(of, &type, &row), SM_OK);
+    assert_false(row.valid);
+    assert_string_equal(row.reason, "links broken at rest: 1");
+    bench_row_free(&row);
+}
+
 /* The brute engine with a goal that is off: what `wrong` does to it. */
 static enum { SHIFT_ALL, SHIFT_ONE, POISON } wrong;
 static SmEngine *watched;
