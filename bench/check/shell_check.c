@@ -256,7 +256,9 @@ void bench_shell_check_state(BenchRunner *runner, BenchElasticFound *found)
     RefShellBody *body = ref_shell_body(runner->engine);
     RefSheet *sheet = &body->sheet;
     size_t size = 3 * (size_t)sheet->warp.nodes;
-    double *before = sm_alloc(2 * size, sizeof *before), *force = sm_alloc(size, sizeof *force);
+    double *before =
+        sm_alloc((size_t)runner->type->get_state(runner->engine, NULL), sizeof *before);
+    double *force = sm_alloc(size, sizeof *force);
     double *slope = sm_alloc(3 * size * (size_t)sheet->followers, sizeof *slope);
     double time = runner->time;
     runner->type->get_state(runner->engine, before);

@@ -21,6 +21,14 @@ void bench_shell_row_fill(const BenchRunner *runner, BenchRow *row)
                                      .skin_seconds = body->skin_seconds};
 }
 
+static SmCode takes(const BenchScene *scene, SmError *error)
+{
+    if (scene->meshless.strength > 0)
+        return sm_fail(error, SM_INPUT,
+                       "%s: a shell that breaks cannot be put back to be timed again", scene->file);
+    return bench_elastic_takes(scene, error);
+}
+
 static void rest(void *check, BenchPlayback *play, void *worst, BenchRow *row)
 {
     (void)check;
@@ -36,7 +44,7 @@ static void state(void *check, BenchPlayback *play, void *worst, BenchRow *row)
 }
 
 const BenchChecker bench_shell_checker = {
-    .size = sizeof(BenchElasticFound), .takes = bench_elastic_takes, .rest = rest, .state = state};
+    .size = sizeof(BenchElasticFound), .takes = takes, .rest = rest, .state = state};
 
 void bench_shell_row_describe(const BenchRunner *runner, const SmCounts *counts)
 {

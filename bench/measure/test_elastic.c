@@ -2,6 +2,7 @@
  * every format, and back from its file. */
 #include "../../lib/test_folder.h"
 #include "../../lib/test_frame.h"
+#include "../../reference/meshless/shell_engine.h"
 #include "../../reference/meshless/solve/solver.h"
 #include "../../reference/paper.h"
 #include "../check/elastic_check.h"
@@ -221,6 +222,18 @@ TEST(scenes_beyond_it_are_refused)
     assert_refused("forces = ( { box_low = [0.0, 0.0, 0.0]; box_high = [1.0, 1.0, 1.0]; } );",
                    "'forces'");
     assert_refused("instances = 2;", "several instances");
+}
+
+TEST(a_shell_that_breaks_is_refused)
+{
+    BenchRow row = {0};
+    BenchMeasureParams params = {.threads = 1};
+    SmError error;
+    scene.meshless.strength = 1;
+    assert_int_equal(bench_measure(&scene, &body, &ref_shell_engine, &params, &row, &error),
+                     SM_INPUT);
+    assert_non_null(strstr(error.text, "breaks"));
+    scene.meshless.strength = 0;
 }
 
 /* What get_state() keeps, set_state() puts back: the same step, bit for bit. And velocities are

@@ -264,20 +264,24 @@ static void shell_get(SmEngine *engine, SmField field, double (*values)[3])
     }
 }
 
-/* Displacements and velocities of the parameters. */
+/* Displacements and velocities of the parameters, and the time. Cracks are more than that. */
 static long shell_get_state(SmEngine *engine, double *state)
 {
     const RefSteps *steps = &engine->body.sheet.steps;
     long size = 3 * engine->body.sheet.warp.nodes;
+    if (engine->body.breaking) return 0;
     if (state) memcpy(state, steps->u, (size_t)size * sizeof *state);
     if (state) memcpy(state + size, steps->v, (size_t)size * sizeof *state);
-    return 2 * size;
+    if (state) state[2 * size] = engine->time;
+    return 2 * size + 1;
 }
 
 static void shell_set_state(SmEngine *engine, const double *state)
 {
     RefSheet *sheet = &engine->body.sheet;
     long size = 3 * sheet->warp.nodes;
+    if (engine->body.breaking) return;
+    engine->time = state[2 * size];
     for (long n = 0; n < size; n++)
         sheet->steps.u[n] = state[n] - sheet->options.h * state[size + n];
     ref_sheet_pose(sheet);

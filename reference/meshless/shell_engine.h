@@ -7,8 +7,9 @@
  * that were given, carried; the lattice plays no part; w, summation, polar and layout mean nothing.
  * create() refuses what the meshless engine refuses. Its state is get_state()'s, and set() is NULL.
  *
- * With a strength it cracks (shell/breaking.h); its points then move with what is on their side.
- * A pressure inside pushes it apart along its normals, as it is at rest, for the first seconds.
+ * With a strength it cracks (shell/breaking.h); its points then move with what is on their side,
+ * and it has no state that could be put back: get_state() says 0. A pressure inside pushes it apart
+ * along its normals, as it is at rest, for the first seconds.
  *
  * A handle holds the surface at some of its particles, apart from each other by a cell at least,
  * and turns its tangents in their middle; one whose particles are all in a line holds places alone.

@@ -166,7 +166,7 @@ TEST(handles_hold_and_turn)
     type->get_state(engine, kept);
     for (int round = 0; round < 2; round++) {
         type->set_state(engine, kept);
-        for (int step = 0; step < 3; step++) type->step(engine, NULL);
+        for (int step = 0; step < 4; step++) type->step(engine, NULL);
         type->get(engine, SM_POSITION, x[round]);
     }
     assert_memory_equal(x[0], x[1], sizeof x[0]);
@@ -179,6 +179,33 @@ TEST(handles_hold_and_turn)
     type->get(engine, SM_POSITION, x[0]);
     for (int p = 0; p < VERTICES; p++) assert_true(sm_dot(x[0][p], x[0][p]) < 4);
     free(kept);
+    scene_free(&scene, engine);
+}
+
+/* A pulse that is over begins again where the state of before it is put back; one that breaks has
+ * no state. */
+TEST(a_state_knows_the_pulse)
+{
+    needs_solver();
+    Scene scene = ring_create();
+    scene.options.pressure = 1000;
+    scene.options.pulse = 0.015;
+    SmEngine *engine = engine_of(&scene);
+    static double x[2][VERTICES][3];
+    double *kept = sm_alloc((size_t)type->get_state(engine, NULL), sizeof *kept);
+    type->get_state(engine, kept);
+    for (int round = 0; round < 2; round++) {
+        for (int step = 0; step < 4; step++) type->step(engine, NULL);
+        type->get(engine, SM_POSITION, x[round]);
+        type->set_state(engine, kept);
+    }
+    assert_memory_equal(x[0], x[1], sizeof x[0]);
+    assert_true(sm_square_between(x[0][0], scene.mesh.position[0]) > 1e-10);
+    free(kept);
+    type->destroy(engine);
+    scene.options.strength = 1e9;
+    engine = engine_of(&scene);
+    assert_int_equal(type->get_state(engine, NULL), 0);
     scene_free(&scene, engine);
 }
 

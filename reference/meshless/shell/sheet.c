@@ -414,6 +414,7 @@ void ref_sheet_pose(RefSheet *sheet)
     set_targets(sheet);
     ref_warp_pose(&sheet->warp, CONST(sheet->steps.u));
     for (int axis = 0; axis < 3; axis++) find_slopes(sheet, axis);
+    sheet->axis = 0;
 }
 
 /* By how much the holds that others lead are to move, less what these speeds make them. */

@@ -75,7 +75,8 @@ void ref_sheet_aim(RefSheet *sheet, int k, const double pose[3][4]);
  * over the surface, which meets them to rounding, and is taken up in the next step. */
 void ref_sheet_step(RefSheet *sheet);
 
-/* After u and v were changed from outside: where the surface is then, with all slopes. */
+/* After u and v were changed from outside: where the surface is then, with all slopes; the next
+ * steps find these as the first steps do. */
 void ref_sheet_pose(RefSheet *sheet);
 
 /* After the shell has changed (cracked.h): its new nodes have these displacements, velocities and
