@@ -33,7 +33,7 @@ static void find_principal(RefFaceStress *stress)
     for (int d = 0; d < 2; d++) stress->along[d] = length > 0 ? stress->along[d] / length : d == 0;
 }
 
-/* The stress at one sample; none where it has no stiffness. */
+/* The stress at one sample; none, and no metric, where it has no stiffness. */
 static RefFaceStress stress_at(const RefCracked *cracked, const RefSamples *samples, long p,
                                const double (*u)[3])
 {
@@ -98,7 +98,8 @@ static RefFaceStress mean_before(const RefCracked *cracked, const RefCrackArm *a
             double way[2] = {stress[n].theta[0] - place[s][0], stress[n].theta[1] - place[s][1]};
             double weight = 1 - (way[0] * way[0] + way[1] * way[1]) / (far * far);
             double ahead = way[0] * arm->way[0] + way[1] * arm->way[1];
-            if (!(weight > 0) || (s > 0 && chart->seam[s - 1].turned ? ahead > 0 : ahead < 0))
+            if (!(weight > 0) || !(stress[n].metric[0] > 0) ||
+                (s > 0 && chart->seam[s - 1].turned ? ahead > 0 : ahead < 0))
                 continue;
             sum += weight;
             for (int i = 0; i < 3; i++) {

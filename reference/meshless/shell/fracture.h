@@ -29,7 +29,8 @@ typedef struct {
 } RefFaceStress;
 
 /* The stresses of displacements u, [nodes][3], in the middles of the quarters of all terminal
- * cells, four of each; the caller frees. `count` receives how many. O(cells * covers). */
+ * cells, four of each; zero, with a metric of zero, where the shell is not stiff. The caller frees.
+ * `count` receives how many. O(cells * covers). */
 RefFaceStress *ref_fracture_stresses(const RefCracked *cracked, const double (*u)[3], long *count);
 
 /* Lets cracks begin, go on and branch by these displacements, once; the update is the caller's.

@@ -180,3 +180,32 @@ TEST(arms_branch)
     free(u);
     plate_free(&plate);
 }
+
+/* What is not stiff has no stress, which is no stress of zero: where every second sample about a
+ * tip is soft, the tip goes on as by the others, also by a stress hardly above the strength. */
+TEST(soft_samples_say_nothing_about_a_tip)
+{
+    needs_solver();
+    Plate plate;
+    plate_of(2, 2, 12, &plate);
+    RefCracks *cracks = &plate.cracked.cracks;
+    double stress = young / (1 - poisson * poisson) * 0.01;
+    RefFractureOptions options = {.strength = 0.99 * stress};
+    int arm = ref_cracks_start(cracks, (double[]){1.01, 0.6}, -1);
+    for (int n = 1; n < 6; n++) ref_cracks_grow(cracks, arm, (double[]){1.01, 0.6 + 0.08 * n});
+    ref_cracked_update(&plate.cracked, NULL);
+    for (long c = 0; c < plate.shell.tree.count; c++) {
+        const RefSamples *samples = &plate.cracked.cell[c].samples;
+        for (long p = 0; p < samples->count; p++)
+            if (samples->theta[p][0] > 1.01) samples->area[p] *= 10;
+    }
+    double(*u)[3] = stretched(&plate.shell, 0, 0.01, 0), tip = cracks->arm[arm].tip[1];
+    long count, soft = 0;
+    RefFaceStress *all = ref_fracture_stresses(&plate.cracked, (const double(*)[3])u, &count);
+    for (long n = 0; n < count; n++) soft += all[n].metric[0] == 0;
+    assert_true(soft > count / 3 && soft < 2 * count / 3);
+    assert_int_equal(ref_fracture_grow(&plate.cracked, &options, (const double(*)[3])u), 1);
+    assert_true(cracks->arm[arm].tip[1] > tip);
+    sm_free_all(all, u);
+    plate_free(&plate);
+}
