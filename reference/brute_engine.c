@@ -320,17 +320,29 @@ static long brute_region(SmEngine *engine, long p, long *member, long room)
     return size;
 }
 
+/* Each link once, however often its pair is given. */
+static void break_body(const SmEngine *engine, Body *body, long count, const int (*pair)[2])
+{
+    long before = body->broken_count;
+    for (long n = 0; n < count; n++) {
+        int p = pair[n][0] < pair[n][1] ? pair[n][0] : pair[n][1], q = pair[n][0] + pair[n][1] - p;
+        bool linked = ref_linked(&body->links, p, q);
+        for (long b = before; linked && b < body->broken_count; b++)
+            linked = body->broken[b][0] != p || body->broken[b][1] != q;
+        if (linked) add_broken(body, p, q);
+    }
+    if (body->broken_count > before) rebuild_body(engine, body);
+}
+
 /* Of every instance: where bodies have broken otherwise, links() are the first one's. */
 static SmCode brute_break_links(SmEngine *engine, long count, const int (*pair)[2], SmError *error)
 {
-    (void)error;
-    for (long b = 0; b < engine->params.instances; b++) {
-        Body *body = engine->body + b;
-        for (long n = 0; n < count; n++)
-            if (ref_linked(&body->links, pair[n][0], pair[n][1]))
-                add_broken(body, pair[n][0], pair[n][1]);
-        rebuild_body(engine, body);
-    }
+    if (!(engine->params.strain_limit > 0))
+        return sm_fail(error, SM_USAGE,
+                       "the body was not made to break; create it with a strain_limit, INFINITY if "
+                       "it is to break in no other way");
+    for (long b = 0; b < engine->params.instances; b++)
+        break_body(engine, engine->body + b, count, pair);
     return SM_OK;
 }
 

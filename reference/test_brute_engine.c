@@ -290,6 +290,27 @@ TEST(stretched_links_break)
     type->destroy(engine);
 }
 
+/* Pairs that are there twice, in either order, or that are no links, or no more, count once. */
+TEST(links_are_broken_once)
+{
+    SmEngineParams params = {.w = 1, .h = 0.01, .strain_limit = INFINITY, .instances = 2};
+    const int pair[4][2] = {{0, 1}, {1, 0}, {0, 1}, {0, 4}};
+    SmError error;
+    SmCounts counts;
+    SmEngine *engine = create(4, 1, 1, &params);
+    for (int n = 0; n < 2; n++) {
+        assert_int_equal(type->break_links(engine, 4, pair, &error), SM_OK);
+        type->count(engine, &counts);
+        assert_int_equal(counts.broken, 2); /* one of each instance */
+        assert_int_equal(counts.links, 5 * 6 + 4 * 16 - 1);
+    }
+    type->destroy(engine);
+    params.strain_limit = 0;
+    engine = create(4, 1, 1, &params);
+    assert_int_equal(type->break_links(engine, 1, pair, &error), SM_USAGE);
+    type->destroy(engine);
+}
+
 TEST(goals_change_nothing_else)
 {
     const SmEngineParams params = {.w = 2, .h = 0.1, .damping = 0.2};
