@@ -1,5 +1,6 @@
 #include "stored.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,6 +11,8 @@
 static const char version[] = "shapebench elastic body 1\n";
 static const char family[] = "shapebench elastic body ";
 enum { MOST_NODES = 1 << 20, MOST_MODES = 4096 };
+/* The mean cube of reaches, by the smallest: at most 8 of a body whose octants are of two sizes. */
+static const double MOST_UNLIKE = 64;
 
 void ref_stored_free(RefStored *stored)
 {
@@ -41,6 +44,7 @@ void ref_stored_of(const char *key, const RefElastic *elastic, RefStored *stored
                           .material = elastic->material,
                           .cell = body->octants.cell,
                           .volume = ref_octants_volume(&body->octants)};
+    assert(strlen(key) < sizeof stored->key);
     snprintf(stored->key, sizeof stored->key, "%s", key);
     memcpy(stored->origin, body->octants.origin, sizeof stored->origin);
     make_room(stored);
@@ -64,13 +68,13 @@ void ref_stored_of(const char *key, const RefElastic *elastic, RefStored *stored
 typedef struct {
     unsigned char *to;         /* NULL: not written */
     const unsigned char *from; /* NULL: not read */
-    size_t at;
+    uint64_t at;               /* what is counted may be more than the address space of the page */
 } Pass;
 
-static void pass(Pass *pass, void *data, size_t size)
+static void pass(Pass *pass, void *data, uint64_t size)
 {
-    if (pass->to) memcpy(pass->to + pass->at, data, size);
-    if (pass->from) memcpy(data, pass->from + pass->at, size);
+    if (pass->to) memcpy(pass->to + pass->at, data, (size_t)size);
+    if (pass->from) memcpy(data, pass->from + pass->at, (size_t)size);
     pass->at += size;
 }
 
@@ -90,8 +94,8 @@ static void pass_head(Pass *p, RefStored *stored)
 
 static void pass_arrays(Pass *p, RefStored *stored)
 {
-    size_t nodes = (size_t)stored->nodes, modes = (size_t)stored->modes;
-    pass(p, stored->child, (size_t)stored->octants * sizeof *stored->child);
+    uint64_t nodes = (uint64_t)stored->nodes, modes = (uint64_t)stored->modes;
+    pass(p, stored->child, (uint64_t)stored->octants * sizeof *stored->child);
     pass(p, stored->position, nodes * sizeof *stored->position);
     pass(p, stored->reach, nodes * sizeof *stored->reach);
     pass(p, stored->mass, nodes * sizeof *stored->mass);
@@ -106,13 +110,13 @@ unsigned char *ref_stored_write(const RefStored *stored, size_t *size)
     size_t lines = strlen(version) + strlen(stored->key) + 1;
     pass_head(&p, &copy);
     pass_arrays(&p, &copy);
-    *size = lines + p.at + sizeof(uint64_t);
+    *size = lines + (size_t)p.at + sizeof(uint64_t);
     unsigned char *bytes = sm_alloc(*size, 1);
     snprintf((char *)bytes, *size, "%s%s\n", version, stored->key);
     p = (Pass){.to = bytes, .at = lines};
     pass_head(&p, &copy);
     pass_arrays(&p, &copy);
-    uint64_t hash = sm_hash_bytes(SM_HASH_START, bytes, p.at);
+    uint64_t hash = sm_hash_bytes(SM_HASH_START, bytes, (size_t)p.at);
     pass(&p, &hash, sizeof hash);
     return bytes;
 }
@@ -134,6 +138,15 @@ static bool is_tree(const RefStored *stored)
     return true;
 }
 
+/* Whether covers are of one size but for a few, so that bins (nodes.h) have few nodes each. */
+static bool are_alike(const RefStored *stored)
+{
+    double least = INFINITY, sum = 0;
+    for (int n = 0; n < stored->nodes; n++) least = fmin(least, stored->reach[n]);
+    for (int n = 0; n < stored->nodes; n++) sum += pow(stored->reach[n] / least, 3);
+    return sum <= MOST_UNLIKE * stored->nodes;
+}
+
 static bool is_sound(const RefStored *stored)
 {
     const RefMaterial *material = &stored->material;
@@ -144,7 +157,7 @@ static bool is_sound(const RefStored *stored)
            all_finite(1, &stored->cell, 1e-300) && all_finite(1, &stored->volume, 1e-300) &&
            all_finite(3, stored->origin, -1e300) &&
            all_finite(3 * nodes, stored->position[0], -1e300) &&
-           all_finite(nodes, stored->reach, 1e-9 * stored->cell) &&
+           all_finite(nodes, stored->reach, 1e-9 * stored->cell) && are_alike(stored) &&
            all_finite(nodes, stored->mass, -1e300) && all_finite(modes, stored->lambda, 0);
 }
 
@@ -189,7 +202,7 @@ SmCode ref_stored_read(const void *bytes, size_t size, RefStored *stored, SmErro
     if (size != all.at + sizeof(uint64_t)) return damaged(error);
     uint64_t hash;
     memcpy(&hash, (const char *)bytes + all.at, sizeof hash);
-    if (hash != sm_hash_bytes(SM_HASH_START, bytes, all.at)) return damaged(error);
+    if (hash != sm_hash_bytes(SM_HASH_START, bytes, (size_t)all.at)) return damaged(error);
     make_room(stored);
     pass_arrays(&p, stored);
     if (is_sound(stored)) return SM_OK;

@@ -38,8 +38,8 @@ typedef struct RefStored {
     float *shape;          /* [modes][nodes][3] */
 } RefStored;
 
-/* What there is to store of an engine's body, with the modes that it moves by now. The caller
- * frees. */
+/* What there is to store of an engine's body, with the modes that it moves by now, under a key of
+ * one line, shorter than REF_STORED_KEY. The caller frees. */
 void ref_stored_of(const char *key, const RefElastic *elastic, RefStored *stored);
 void ref_stored_free(RefStored *stored);
 

@@ -239,6 +239,15 @@ TEST(what_is_no_stored_body_is_refused)
     assert_int_equal(ref_stored_read(bytes, size, &again, &error), SM_INPUT);
     stored.child[0] = -1;
     free(bytes);
+    stored.reach[3] *= 100; /* a cover of many bins */
+    bytes = ref_stored_write(&stored, &size);
+    assert_int_equal(ref_stored_read(bytes, size, &again, &error), SM_INPUT);
+    stored.reach[3] /= 100;
+    free(bytes);
+    bytes = ref_stored_write(&stored, &size);
+    assert_int_equal(ref_stored_read(bytes, size, &again, &error), SM_OK);
+    ref_stored_free(&again);
+    free(bytes);
     stored.shape[5] = NAN;
     bytes = ref_stored_write(&stored, &size);
     assert_int_equal(ref_stored_read(bytes, size, &again, &error), SM_INPUT);
