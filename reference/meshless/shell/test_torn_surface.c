@@ -5,6 +5,8 @@
 #include "test_shell.h"
 #include "torn_surface.h"
 
+static unsigned seed = 1;
+
 enum { ALONG = 60, ACROSS = 24 };
 
 static const double length = 2.5, thickness = 0.05;
@@ -18,8 +20,10 @@ typedef struct {
     RefTornSurface torn;
 } Plate;
 
-/* A flat plate that carries a grid of triangles. */
-static void plate_create(Plate *plate)
+static const double radius = 2.5 / (2 * M_PI); /* of a tube that is `length` around */
+
+/* A flat plate that carries a grid of triangles; or a tube of it, its ends joined by a seam. */
+static void plate_create(bool round, Plate *plate)
 {
     RefSheetOptions options = {.shell = {.across = 6,
                                          .basis = REF_MLS_PLANE_LINEAR,
@@ -31,17 +35,20 @@ static void plate_create(Plate *plate)
     RefFractureOptions strong = {.strength = 1e30};
     SmError error = {0};
     plate->chart = (RefChart){.high = {length, 1}, .factor = factor_one, .place = place_flat};
+    if (round) plate->chart = cylinder_chart(&radius, length, 1);
+    if (round) ref_chart_wrap(&plate->chart, true, false);
     assert_int_equal(ref_sheet_create(&plate->chart, &options, &plate->sheet, &error), SM_OK);
     assert_int_equal(
         ref_breaking_create(&plate->sheet, &cracked, &strong, &plate->breaking, &error), SM_OK);
     for (int n = 0; n < (ALONG + 1) * (ACROSS + 1); n++) {
         plate->theta[n][0] = length * (n % (ALONG + 1)) / ALONG;
         plate->theta[n][1] = (double)(n / (ALONG + 1)) / ACROSS;
-        place_flat(NULL, plate->theta[n], plate->rest[n]);
+        plate->chart.place(plate->chart.data, plate->theta[n], plate->rest[n]);
     }
     for (int n = 0; n < ALONG * ACROSS; n++) {
         int at = n / ALONG * (ALONG + 1) + n % ALONG, up = at + ALONG + 1;
-        const int both[2][3] = {{at, at + 1, up + 1}, {at, up + 1, up}};
+        int right = round && n % ALONG == ALONG - 1 ? at + 1 - ALONG : at + 1;
+        const int both[2][3] = {{at, right, right + ALONG + 1}, {at, right + ALONG + 1, up}};
         memcpy(plate->triangle[2 * n], both, sizeof both);
     }
     ref_torn_create(&plate->chart, (ALONG + 1) * (ACROSS + 1), 2 * ALONG * ACROSS,
@@ -89,7 +96,7 @@ TEST(what_is_drawn_is_closed)
     needs_solver();
     static Plate plate;
     long pieces;
-    plate_create(&plate);
+    plate_create(false, &plate);
     SmMesh mesh = drawn(&plate, (const double(*)[3])plate.rest);
     assert_true(fabs(volume_of(&mesh, &pieces) / (length * thickness) - 1) < 1e-9);
     assert_int_equal(pieces, 1);
@@ -117,7 +124,7 @@ TEST(copies_go_with_their_side)
 {
     needs_solver();
     static Plate plate;
-    plate_create(&plate);
+    plate_create(false, &plate);
     cut(&plate, 1.2, 2);
     ref_torn_update(&plate.torn, &plate.breaking.cracked);
     assert_int_equal(plate.sheet.warp.pieces, 2);
@@ -133,5 +140,72 @@ TEST(copies_go_with_their_side)
         assert_true(fabs(side) < 1e-9 || fabs(is[0] - was[0] - copysign(0.1, side)) < 1e-6);
     }
     sm_mesh_free(&mesh);
+    plate_free(&plate);
+}
+
+/* Whether the triangles beside each other have the same corner there, but along open edges. */
+static void check_corners(const RefTornSurface *torn)
+{
+    for (long t = 0; t < torn->triangles; t++)
+        for (int k = 0; k < 3; k++) {
+            if (torn->open[t][k]) continue;
+            const int *beside = torn->corner[torn->beside[t][k]];
+            for (int e = 0; e < 2; e++) {
+                int corner = torn->corner[t][(k + e) % 3];
+                assert_true(beside[0] == corner || beside[1] == corner || beside[2] == corner);
+            }
+        }
+}
+
+/* Triangles that turn the other way do not come apart for that, nor do those beside a seam; and a
+ * crack along the seam or beside it tears as many as elsewhere. */
+TEST(turned_triangles_and_seams_hold_together)
+{
+    needs_solver();
+    static Plate plate;
+    for (int turned = 0; turned < 2; turned++) {
+        plate_create(true, &plate);
+        for (int t = 0; turned && t < 2 * ALONG * ACROSS; t++)
+            if (random_int(&seed, 3) == 0) {
+                int *corner = plate.triangle[t], other = corner[1];
+                corner[1] = corner[2];
+                corner[2] = other;
+            }
+        ref_torn_free(&plate.torn);
+        ref_torn_create(&plate.chart, (ALONG + 1) * (ACROSS + 1), 2 * ALONG * ACROSS,
+                        (const int(*)[3])plate.triangle, (const double(*)[2])plate.theta,
+                        (const double(*)[3])plate.rest, &plate.torn);
+        assert_false(ref_torn_update(&plate.torn, &plate.breaking.cracked));
+        assert_int_equal(plate.torn.copies, 0);
+        assert_int_equal(plate.torn.open_edges, 2 * ALONG);
+        for (int n = 0; n < 2; n++) {
+            cut(&plate, n ? length - 0.02 : 1.2, 2);
+            assert_true(ref_torn_update(&plate.torn, &plate.breaking.cracked));
+            check_corners(&plate.torn);
+            assert_in_range(plate.torn.copies, (n + 1) * ACROSS, (n + 1) * 4 * ACROSS);
+            assert_int_equal(plate.sheet.warp.pieces, 1 + n);
+        }
+        plate_free(&plate);
+    }
+}
+
+/* Another crack than before that tears as many edges and vertices is seen. */
+TEST(what_has_changed_is_seen)
+{
+    needs_solver();
+    static Plate plate;
+    RefCracks *cracks = &plate.breaking.cracked.cracks;
+    plate_create(false, &plate);
+    for (int n = 0; n < 2; n++) {
+        RefCracks none;
+        double x = n ? 1.7 : 0.7;
+        int arm = ref_cracks_start(cracks, (double[]){x + 0.01, 0.51}, -1);
+        ref_cracks_grow(cracks, arm, (double[]){x + 0.01, 0.71});
+        assert_true(ref_torn_update(&plate.torn, &plate.breaking.cracked));
+        assert_true(plate.torn.copies > 0);
+        ref_cracks_create(&plate.chart, cracks->margin, &none);
+        ref_cracks_free(cracks);
+        *cracks = none;
+    }
     plate_free(&plate);
 }

@@ -128,26 +128,35 @@ static int add_copy(RefTornSurface *torn, int vertex, const double eye[2])
 }
 
 /* All triangles about a vertex that hang together with this one get the corner `as`, through edges
- * that are not open, round one way and then the other. */
+ * that are not open, round one way and then the other. A triangle is left by the edge that it was
+ * not entered by, whichever way its corners turn. */
 static void spread(RefTornSurface *torn, long t, int vertex, int as, bool *done)
 {
-    for (int way = 0; way < 2; way++)
+    for (int way = 0; way < 2; way++) {
+        bool behind = way; /* whether the edge comes from the corner before the vertex */
         for (long at = t;;) {
-            int k = corner_of(torn->whole[at], vertex), side = way ? (k + 2) % 3 : k;
+            int k = corner_of(torn->whole[at], vertex), side = behind ? (k + 2) % 3 : k;
+            int far = torn->whole[at][behind ? side : (k + 1) % 3];
             torn->corner[at][k] = as;
             done[3 * at + k] = true;
-            long next = torn->beside[at][side];
-            if (torn->open[at][side] || done[3 * next + corner_of(torn->whole[next], vertex)])
-                break;
-            at = next;
+            if (torn->open[at][side]) break;
+            at = torn->beside[at][side];
+            k = corner_of(torn->whole[at], vertex);
+            if (done[3 * at + k]) break;
+            behind = torn->whole[at][(k + 1) % 3] == far;
         }
+    }
 }
 
 /* First those that see their vertex itself, then copies for the others. */
 bool ref_torn_update(RefTornSurface *torn, const RefCracked *cracked)
 {
-    long before = torn->copies, open = torn->open_edges;
-    bool *done = sm_alloc(3 * (size_t)torn->triangles, sizeof *done);
+    size_t size = (size_t)torn->triangles;
+    int(*corner)[3] = sm_alloc(size, sizeof *corner);
+    bool(*open)[3] = sm_alloc(size, sizeof *open);
+    memcpy(corner, torn->corner, size * sizeof *corner);
+    memcpy(open, torn->open, size * sizeof *open);
+    bool *done = sm_alloc(3 * size, sizeof *done);
     bool *home = sm_alloc((size_t)torn->vertices, sizeof *home);
     torn->copies = 0;
     part_edges(torn, cracked);
@@ -161,9 +170,10 @@ bool ref_torn_update(RefTornSurface *torn, const RefCracked *cracked)
                 spread(torn, t, v, pass == 0 ? v : add_copy(torn, v, torn->middle[t]), done);
                 home[v] = true;
             }
-    free(done);
-    free(home);
-    return torn->copies != before || torn->open_edges != open;
+    bool changed = memcmp(corner, torn->corner, size * sizeof *corner) != 0 ||
+                   memcmp(open, torn->open, size * sizeof *open) != 0;
+    sm_free_all(done, home, corner, open);
+    return changed;
 }
 
 SmMesh ref_torn_mesh(const RefTornSurface *torn)
