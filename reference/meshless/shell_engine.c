@@ -88,11 +88,6 @@ static SmCode make_breaking(const RefMeshlessOptions *options, SmEngine *engine,
                                error);
 }
 
-static bool again(const void *cracked, long cell)
-{
-    return ref_cracked_again(cracked, cell);
-}
-
 static SmCode make_sheet(const SmEngineParams *params, SmEngine *engine, SmError *error)
 {
     const RefMeshlessOptions *options = params->meshless;
@@ -219,8 +214,9 @@ static void follow_cracks(SmEngine *engine)
 {
     RefShellBody *body = &engine->body;
     double start = sm_now();
-    ref_foot_renew(&body->sheet.shell, &body->sheet.warp, (const double(*)[2])body->map.theta,
-                   CONST(engine->rest), again, &body->breaking->cracked, &body->skin, &body->loose);
+    ref_foot_renew(&body->breaking->cracked, &body->sheet.warp, body->sheet.leant,
+                   (const double(*)[2])body->map.theta, CONST(engine->rest), &body->skin,
+                   &body->loose);
     body->carry_seconds = sm_now() - start;
     ref_shape_free(&engine->shape);
     engine->shape = ref_shape_create(&body->sheet.shell.nodes);

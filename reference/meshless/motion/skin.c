@@ -150,12 +150,16 @@ static void compact(RefSkin *skin)
     free(old.weight);
 }
 
-void ref_skin_renew(const RefSkinCarrier *carrier, bool (*stale)(const void *data, long cell),
+void ref_skin_renew(const RefSkinCarrier *carrier,
+                    bool (*stale)(const void *data, long cell, int nodes, const int *node),
                     RefSkin *skin, long *loose)
 {
     Builder builder = builder_of(carrier);
-    for (long b = 0; b < skin->blocks; b++)
-        if (stale(carrier->data, skin->block[b].cell)) weigh_block(&builder, skin, skin->block + b);
+    for (long b = 0; b < skin->blocks; b++) {
+        RefSkinBlock *block = skin->block + b;
+        if (stale(carrier->data, block->cell, block->nodes, skin->node + block->node))
+            weigh_block(&builder, skin, block);
+    }
     if (skin->weights * sizeof(float) > 2 * ref_skin_bytes(skin)) compact(skin);
     make_near(skin);
     if (loose) *loose += builder.loose;

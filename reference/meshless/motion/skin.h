@@ -44,9 +44,10 @@ typedef struct {
 void ref_skin_build(const RefSkinCarrier *carrier, bool lifted, long count, const double (*x)[3],
                     RefSkin *skin, long *loose);
 
-/* Blocks whose cell `stale` says so of are weighed again. What they had before is lost until it is
+/* Blocks that `stale` says so of are weighed again. What they had before is lost until it is
  * more than what is in use; then all moves together. `loose` (may be NULL) grows by new ones. */
-void ref_skin_renew(const RefSkinCarrier *carrier, bool (*stale)(const void *data, long cell),
+void ref_skin_renew(const RefSkinCarrier *carrier,
+                    bool (*stale)(const void *data, long cell, int nodes, const int *node),
                     RefSkin *skin, long *loose);
 
 /* Points that too few nodes cover move with the node nearest to them; `loose` (may be NULL)

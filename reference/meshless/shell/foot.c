@@ -13,8 +13,8 @@ typedef struct {
     const RefWarp *warp;
     const double (*theta)[2];
     const double (*x)[3];
-    bool (*again)(const void *cracked, long cell);
-    const void *cracked;
+    const RefCracked *cracked;
+    const bool *leant;
 } Feet;
 
 static long cell_of(const void *data, long point)
@@ -128,18 +128,20 @@ static bool weigh(const void *data, long point, RefShape *shape, double *lift)
     return ref_foot_at(feet->shell, feet->warp, feet->theta[point], feet->x[point], shape, lift);
 }
 
-static bool is_stale(const void *data, long cell)
+static bool is_stale(const void *data, long cell, int nodes, const int *node)
 {
     const Feet *feet = data;
-    return feet->again(feet->cracked, cell);
+    if (ref_cracked_again(feet->cracked, cell)) return true;
+    for (int n = 0; n < nodes; n++)
+        if (feet->leant[node[n]]) return true;
+    return false;
 }
 
-void ref_foot_renew(const RefShell *shell, const RefWarp *warp, const double (*theta)[2],
-                    const double (*x)[3], bool (*again)(const void *cracked, long cell),
-                    const void *cracked, RefSkin *skin, long *loose)
+void ref_foot_renew(const RefCracked *cracked, const RefWarp *warp, const bool *leant,
+                    const double (*theta)[2], const double (*x)[3], RefSkin *skin, long *loose)
 {
-    Feet feet = {shell, warp, theta, x, again, cracked};
-    RefSkinCarrier carrier = {&feet, &shell->nodes, cell_of, weigh, nearest};
+    Feet feet = {cracked->shell, warp, theta, x, cracked, leant};
+    RefSkinCarrier carrier = {&feet, &cracked->shell->nodes, cell_of, weigh, nearest};
     ref_skin_renew(&carrier, is_stale, skin, loose);
 }
 

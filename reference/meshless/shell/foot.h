@@ -4,6 +4,7 @@
 #define REF_FOOT_H
 
 #include "../motion/skin.h"
+#include "cracked.h"
 #include "warp.h"
 
 /* The skin of points at rest, [count], whose parameters are near `theta`. A foot is where the line
@@ -15,11 +16,11 @@
 void ref_foot_skin(const RefShell *shell, const RefWarp *warp, long count, const double (*theta)[2],
                    const double (*x)[3], RefSkin *skin, long *loose);
 
-/* The same of points in cells, counted as when the skin was made, that `again` says are others now.
- * Points are numbered as then. `loose` grows by those that have become so. */
-void ref_foot_renew(const RefShell *shell, const RefWarp *warp, const double (*theta)[2],
-                    const double (*x)[3], bool (*again)(const void *cracked, long cell),
-                    const void *cracked, RefSkin *skin, long *loose);
+/* The same of points in cells, counted as when the skin was made, that the last update took again,
+ * and of those which nodes move whose normals `leant` marks, as the sheet has it. Points are
+ * numbered as then. `loose` grows by those that have become so. */
+void ref_foot_renew(const RefCracked *cracked, const RefWarp *warp, const bool *leant,
+                    const double (*theta)[2], const double (*x)[3], RefSkin *skin, long *loose);
 
 /* Where the functions of the foot of x at rest were taken, which move it: their values are in
  * `shape`, and how far x is off along the normal in `lift`. False, and nothing, where functions are

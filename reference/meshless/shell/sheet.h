@@ -52,6 +52,7 @@ typedef struct {
     RefRows rows;        /* of the steps: what leading holds bind, and shapes and turns of others */
     double *aim;         /* [rows] their values */
     int axis;            /* whose slopes are found after the next step */
+    bool *leant; /* [nodes] whose normals at rest the last ref_sheet_renew() changed; or NULL */
 } RefSheet;
 
 /* At rest and free. `sheet` must not move in memory. The caller frees. Errors: those of shell.h and

@@ -1,5 +1,8 @@
 /* Shells that move, are held and break. */
+#include "../../../lib/test_random.h"
+#include "../motion/rotation.h"
 #include "breaking.h"
+#include "foot.h"
 #include "test_shell.h"
 
 typedef struct {
@@ -8,8 +11,10 @@ typedef struct {
     RefBreaking breaking;
 } Strip;
 
-/* A flat strip, 4 by 1, that breaks above a strength. */
-static void strip_create(double strength, Strip *strip)
+static const double radius = 1.5;
+
+/* A strip, 4 by 1, flat or bent around z, that breaks above a strength. */
+static void strip_create(bool bent, double strength, Strip *strip)
 {
     RefSheetOptions options = {.shell = {.across = 5,
                                          .basis = REF_MLS_PLANE_LINEAR,
@@ -22,6 +27,7 @@ static void strip_create(double strength, Strip *strip)
     RefFractureOptions fracture = {.strength = strength, .most_starts = 2};
     SmError error = {0};
     strip->chart = (RefChart){.high = {4, 1}, .factor = factor_one, .place = place_flat};
+    if (bent) strip->chart = cylinder_chart(&radius, 4, 1);
     if (ref_sheet_create(&strip->chart, &options, &strip->sheet, &error) != SM_OK)
         fail_msg("%s", error.text);
     if (ref_breaking_create(&strip->sheet, &cracked, &fracture, &strip->breaking, &error) != SM_OK)
@@ -64,7 +70,7 @@ TEST(pieces_are_held_each_for_itself)
     double energy[2];
     for (int through = 0; through < 2; through++) {
         static Strip strip;
-        strip_create(1e30, &strip);
+        strip_create(false, 1e30, &strip);
         cut(&strip, 1.9, through ? 2 : 0.5);
         assert_int_equal(strip.sheet.warp.pieces, 1 + through);
         double at[3][3][3] = {{{0.3, 0.5}, {0.3, 0.1}, {0.3, 0.9}},
@@ -95,7 +101,7 @@ TEST(what_cannot_be_followed_has_not_happened)
     static Strip strip[2];
     bool changed[2], again;
     for (int k = 0; k < 2; k++) {
-        strip_create(20, strip + k);
+        strip_create(false, 20, strip + k);
         cut(strip + k, 1.9, 0.3);
         double(*v)[3] = (double(*)[3])strip[k].sheet.steps.v;
         for (long n = 0; n < strip[k].sheet.warp.nodes; n++)
@@ -130,4 +136,52 @@ TEST(what_cannot_be_followed_has_not_happened)
     print_message("%d changes, %d failures, %ld nodes\n", changes, failures, shell->nodes.count);
     assert_true(failures > 2 && changes > failures);
     for (int k = 0; k < 2; k++) strip_free(strip + k);
+}
+
+/* Points beside a strip that a crack goes into are carried by what it has made of the functions and
+ * normals there: they turn with a strip that turns. */
+TEST(points_are_carried_after_cracks)
+{
+    needs_solver();
+    enum { POINTS = 600 };
+    static Strip strip;
+    static double theta[POINTS][2], x[POINTS][3], now[POINTS][3];
+    unsigned seed = 1;
+    RefSheet *sheet = &strip.sheet;
+    RefSkin skin;
+    long loose;
+    strip_create(true, 1e30, &strip);
+    for (int p = 0; p < POINTS; p++) {
+        double r = radius + random_between(&seed, -0.06, 0.06);
+        for (int d = 0; d < 2; d++)
+            theta[p][d] = random_between(&seed, 0, sheet->shell.chart.high[d]);
+        x[p][0] = r * cos(theta[p][0] / radius);
+        x[p][1] = r * sin(theta[p][0] / radius);
+        x[p][2] = theta[p][1];
+    }
+    ref_foot_skin(&sheet->shell, &sheet->warp, POINTS, (const double(*)[2])theta,
+                  (const double(*)[3])x, &skin, &loose);
+    for (int n = 0; n < 2; n++) {
+        cut(&strip, n ? 2.9 : 1.3, n ? 0.7 : 0.4);
+        ref_foot_renew(&strip.breaking.cracked, &sheet->warp, sheet->leant,
+                       (const double(*)[2])theta, (const double(*)[3])x, &skin, &loose);
+    }
+    assert_int_equal(loose, 0);
+    const double w[3] = {0.5, -1.2, 0.4};
+    double R[9], shift[3], most = 0;
+    for (long n = 0; n < sheet->warp.nodes; n++)
+        sm_cross(w, sheet->warp.X[n], sheet->steps.u + 3 * n);
+    ref_sheet_pose(sheet);
+    ref_skin_place(&skin, (const double(*)[3])sheet->warp.moved,
+                   (const double(*)[3])sheet->warp.turned, now);
+    ref_rotation(w, R);
+    for (int d = 0; d < 3; d++)
+        shift[d] =
+            sheet->warp.X[0][d] + sheet->warp.moved[0][d] - sm_dot(R + 3 * d, sheet->warp.X[0]);
+    for (int s = 0; s < POINTS; s++)
+        for (int d = 0; d < 3; d++)
+            most = fmax(most, fabs(now[s][d] - sm_dot(R + 3 * d, skin.rest[s]) - shift[d]));
+    assert_true(most < 1e-5);
+    ref_skin_free(&skin);
+    strip_free(&strip);
 }
