@@ -3,6 +3,7 @@
 #include "../../lib/test_frame.h"
 #include "../../lib/vector.h"
 #include "../../lib/voxel/voxelise.h"
+#include "shell/foot.h"
 #include "shell_engine.h"
 #include "test_solver.h"
 
@@ -263,6 +264,25 @@ static void stops_where_a_crack_cannot_be_followed(SmEngine *engine, SmMesh *sur
     sm_mesh_free(&drawn);
 }
 
+/* What carries points is what would be made of the shell as it is now. */
+static void check_carried(SmEngine *engine)
+{
+    const RefShellBody *body = ref_shell_body(engine);
+    const RefWarp *warp = &body->sheet.warp;
+    static double rest[VERTICES][3], x[VERTICES][3], place[VERTICES][3];
+    RefSkin skin;
+    long loose;
+    type->get(engine, SM_REST, rest);
+    type->get(engine, SM_POSITION, x);
+    ref_foot_skin(&body->sheet.shell, warp, VERTICES, (const double(*)[2])body->map.theta,
+                  (const double(*)[3])rest, &skin, &loose);
+    ref_skin_place(&skin, (const double(*)[3])warp->moved, (const double(*)[3])warp->turned, place);
+    assert_int_equal(loose, body->loose);
+    for (int s = 0; s < VERTICES; s++)
+        assert_true(sm_square_between(place[s], x[skin.order[s]]) < 1e-12);
+    ref_skin_free(&skin);
+}
+
 /* A pulse of pressure bursts it: nodes are added where cracks run, and what is drawn of the surface
  * comes apart in pieces that are closed. */
 TEST(one_that_is_blown_up_comes_apart)
@@ -289,6 +309,7 @@ TEST(one_that_is_blown_up_comes_apart)
     assert_true(after.components > before.components);
     type->get(engine, SM_POSITION, x);
     for (int v = 0; v < VERTICES; v++) assert_true(isfinite(x[v][0] + x[v][1] + x[v][2]));
+    check_carried(engine);
     stops_where_a_crack_cannot_be_followed(engine, &surface);
     sm_mesh_free(&surface);
     scene_free(&scene, engine);

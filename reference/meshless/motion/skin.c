@@ -113,7 +113,9 @@ static void fill_weights(Builder *builder, RefSkin *skin, RefSkinBlock *block)
 
 static void weigh_block(Builder *builder, RefSkin *skin, RefSkinBlock *block)
 {
+    long before = builder->loose -= block->loose;
     for (int p = 0; p < block->points; p++) evaluate(builder, p, skin->order[block->first + p]);
+    block->loose = (int)(builder->loose - before);
     list_nodes(builder, skin, block);
     fill_weights(builder, skin, block);
 }

@@ -18,7 +18,7 @@ void ref_foot_skin(const RefShell *shell, const RefWarp *warp, long count, const
 
 /* The same of points in cells, counted as when the skin was made, that the last update took again,
  * and of those which nodes move whose normals `leant` marks, as the sheet has it. Points are
- * numbered as then. `loose` grows by those that have become so. */
+ * numbered as then. `loose` changes by those that are so no more, or now. */
 void ref_foot_renew(const RefCracked *cracked, const RefWarp *warp, const bool *leant,
                     const double (*theta)[2], const double (*x)[3], RefSkin *skin, long *loose);
 
