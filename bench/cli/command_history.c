@@ -34,6 +34,8 @@ static void check(const struct argp_state *state, void *record)
     const Options *options = record;
     if (!options->common.words)
         bench_usage(state, "which FILE? 'shapebench tables -o FILE.h5' makes one");
+    if (options->by == BY_CYCLES && options->format == BENCH_HISTORY_GBENCH)
+        bench_usage(state, "--by cycles: gbench has times alone");
 }
 
 static const char help[] =

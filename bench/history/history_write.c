@@ -156,16 +156,25 @@ static json_t *metric_json(double value, double low, double high)
                      bench_json_number(low), "upper_value", bench_json_number(high));
 }
 
+/* The scene; of further rows of it also what tells them apart, in the end a number. */
+static void name_metric(const json_t *root, const BenchRow *row, size_t size, char *name)
+{
+    snprintf(name, size, "%s", row->scene);
+    if (json_object_get(root, name)) sm_append(name, size, " (%s)", row->engine);
+    if (json_object_get(root, name)) sm_append(name, size, " (%s)", row->precision);
+    size_t length = strlen(name);
+    for (int n = 2; json_object_get(root, name); n++)
+        snprintf(name + length, size - length, " (%d)", n);
+}
+
 static void write_bencher(FILE *file, const BenchHistory *history)
 {
     json_t *root = json_object();
     for (int s = 0; s < history->count; s++) {
         const BenchHistoryPoint *point = &history->series[s].point[history->series[s].points - 1];
-        char name[96];
+        char name[160];
         if (point->file != history->files - 1) continue;
-        const BenchRow *row = point->row;
-        snprintf(name, sizeof name, "%s", row->scene);
-        if (json_object_get(root, name)) sm_append(name, sizeof name, " (%s)", row->engine);
+        name_metric(root, point->row, sizeof name, name);
         json_t *measures = json_object();
         double unit = history->by_cycles ? 1 : 1e6;
         json_object_set_new(

@@ -38,6 +38,7 @@ static int set_up(void **state)
     run("tables --scene tiny.cfg --repeats 8 --block 0.1 -o tiny.h5", &result);
     if (result.code || bench_store_load(path_in("tiny.h5"), &rows, &count, &machine, &error))
         return -1;
+    rows->busy = false; /* the times are made up */
     for (int day = 1; day <= FILES; day++) {
         char name[32];
         int noise = 7919 * day % 17 - 8;                      /* -8..8: up to 0.8% */
@@ -111,6 +112,34 @@ TEST(json_has_all_that_is_drawn)
     json_decref(root);
 }
 
+/* Rows of a scene that are of other work have a name each. */
+TEST(no_row_takes_anothers_name)
+{
+    static const char *const names[] = {"tiny", "tiny (brute)", "tiny (brute) (single)",
+                                        "tiny (brute) (single) (2)"};
+    BenchRow row[4];
+    Result result;
+    SmError error;
+    double value;
+    for (int r = 0; r < 4; r++) {
+        row[r] = rows[0];
+        row[r].total_ms = 1 + r;
+        row[r].particles += r == 3;
+        strcpy(row[r].precision, r < 2 ? "double" : "single");
+        row[r].threads = r == 1 ? 2 : 1;
+    }
+    assert_int_equal(bench_store_rows(path_in("four.h5"), row, 4, &machine, &error), SM_OK);
+    run("history four.h5 --format bencher", &result);
+    json_t *root = json_loads(result.out, 0, NULL);
+    assert_int_equal(json_object_size(root), 4);
+    for (int r = 0; r < 4; r++) {
+        assert_int_equal(json_unpack(root, "{s:{s:{s:F}}}", names[r], "latency", "value", &value),
+                         0);
+        assert_true(fabs(value - 1e6 * (1 + r)) < 1);
+    }
+    json_decref(root);
+}
+
 /* The newest alone, in nanoseconds. */
 TEST(exports_are_of_the_newest_file)
 {
@@ -145,6 +174,7 @@ TEST(mistakes_are_named)
     expect("history tiny.cfg", 3, "not an HDF5 file");
     expect("history d01.h5 --format pdf", 2, "not one of text, markdown, json, bencher, gbench");
     expect("history d01.h5 -o d02.h5", 4, "d02.h5");
+    expect("history d01.h5 --by cycles --format gbench", 2, "gbench has times alone");
     rows[0].particles++;
     store("other.h5", 17, 3); /* other work: a series of its own */
     rows[0].particles--;
