@@ -170,6 +170,14 @@ static void task_of_row(const BenchRow *row, BenchTask *task)
         task->block = 1e3 * bench_quantile(row->total, row->repeats, 0) * row->steps;
 }
 
+/* Is it the scene of this name, or of this file? */
+static bool is_scene(const char *named, const char *scene)
+{
+    BenchScene found;
+    if (!strcmp(named, scene)) return true;
+    return !bench_scene_find(named, &found, NULL) && !strcmp(found.name, scene);
+}
+
 /* The scenes named, or all of the file. */
 static void file_tasks(Session *session)
 {
@@ -178,11 +186,9 @@ static void file_tasks(Session *session)
         const BenchRow *row = &session->stored[i];
         bool there = options->scenes.count > 0;
         for (int t = 0; t < session->tasks; t++) {
-            BenchScene scene;
             BenchTask *task = &session->task[t];
-            bool same = !strcmp(task->scene, row->scene) ||
-                        (options->scenes.count && !bench_scene_find(task->scene, &scene, NULL) &&
-                         !strcmp(scene.name, row->scene));
+            bool same = options->scenes.count ? is_scene(task->scene, row->scene)
+                                              : !strcmp(task->scene, row->scene);
             if (same && options->scenes.count) task_of_row(row, task);
             there |= same;
         }
@@ -274,11 +280,11 @@ static SmCode build_revision(Session *session, SmError *error)
 static bool wanted(const Options *options, const char *scene)
 {
     for (int i = 0; i < options->scenes.count; i++)
-        if (!strcmp(options->scenes.name[i], scene)) return true;
+        if (is_scene(options->scenes.name[i], scene)) return true;
     return options->scenes.count == 0;
 }
 
-/* A stored file as a build of its own, every repeat a sample. Whatever the instruction set. */
+/* A stored file as a build of its own, every repeat a sample; times of a busy machine are none. */
 static SmCode add_file(Session *session, BenchBuild build, SmError *error)
 {
     BenchRow *rows;
@@ -288,8 +294,11 @@ static SmCode add_file(Session *session, BenchBuild build, SmError *error)
     if (code) return code;
     for (int i = 0; i < count; i++) {
         if (!wanted(session->options, rows[i].scene)) continue;
-        rows[i].isa[0] = '\0';
-        bench_ab_add_repeats(&session->all, build, &rows[i]);
+        BenchSide *side = &bench_ab_scene(&session->all, rows[i].scene)->side[build];
+        if (rows[i].valid && rows[i].busy && session->options->by == BY_TIME)
+            snprintf(side->reason, sizeof side->reason, "it is BUSY there");
+        else
+            bench_ab_add_repeats(&session->all, build, &rows[i]);
     }
     bench_rows_free(rows, count);
     return SM_OK;
@@ -306,7 +315,7 @@ static SmCode add_files(Session *session, SmError *error)
     for (int i = 0; i < options->scenes.count; i++) {
         bool there = false;
         for (int s = 0; s < session->all.count; s++)
-            there |= !strcmp(session->all.scenes[s].scene, options->scenes.name[i]);
+            there |= is_scene(options->scenes.name[i], session->all.scenes[s].scene);
         if (!there)
             return sm_fail(error, (SmCode)BENCH_EXIT_NO_BASELINE,
                            "no baseline: neither file has the scene %.60s",
@@ -394,8 +403,9 @@ static void print_found(FILE *file, const void *what)
 static SmCode compare(Session *session, SmError *error)
 {
     const Options *options = session->options;
-    BenchCompareParams params = {options->revision != NULL, session->rounds, options->threshold,
-                                 options->common.seed, options->by == BY_CYCLES};
+    BenchCompareParams params = {options->revision != NULL, session->rounds,
+                                 options->threshold,        options->common.seed,
+                                 options->by == BY_CYCLES,  options->common.words > 0};
     BenchRegression *found = &session->found;
     double start = sm_now();
     SmCode code = measure(session, error);

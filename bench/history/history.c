@@ -15,7 +15,6 @@ static SmCode read_files(const char *const *path, int files, BenchHistory *histo
         BenchHistoryFile file = {.path = path[f]};
         SmCode code = bench_store_load(path[f], &file.row, &file.rows, &file.machine, error);
         if (code) return code;
-        for (int r = 0; r < file.rows; r++) file.row[r].isa[0] = '\0'; /* a mark tells */
         int place =
             history->files++; /* the time, and of one time the order in which they are named */
         for (; place && strcmp(history->file[place - 1].machine.utc, file.machine.utc) > 0; place--)
@@ -47,14 +46,15 @@ static bool set_point(const BenchHistory *history, int file, const BenchRow *row
     return isfinite(point->value) && point->value > 0;
 }
 
-/* The series whose newest row is of the same scene and work; a new one where there is none. */
+/* The series whose newest row is of the same scene and work; a new one where there is none. Of
+ * another instruction set a mark tells. */
 static BenchSeries *find_series(BenchHistory *history, const BenchHistoryPoint *point)
 {
     char reason[224];
     for (int s = 0; s < history->count; s++) {
         const BenchHistoryPoint *last = &history->series[s].point[history->series[s].points - 1];
         if (last->file != point->file && !strcmp(last->row->scene, point->row->scene) &&
-            bench_same_work(last->row, point->row, sizeof reason, reason))
+            bench_same_work(last->row, point->row, true, sizeof reason, reason))
             return &history->series[s];
     }
     history->series =

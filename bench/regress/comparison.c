@@ -32,7 +32,7 @@ static int values(const BenchCompareParams *params)
     return params->by_cycles ? 1 : BENCH_TIMES;
 }
 
-bool bench_same_work(const BenchRow *a, const BenchRow *b, size_t size, char *reason)
+bool bench_same_work(const BenchRow *a, const BenchRow *b, bool any_isa, size_t size, char *reason)
 {
     const struct {
         const char *what;
@@ -53,7 +53,7 @@ bool bench_same_work(const BenchRow *a, const BenchRow *b, size_t size, char *re
         snprintf(reason, size, "other work: precision %s, now %s", a->precision, b->precision);
         return false;
     }
-    if (a->isa[0] && b->isa[0] && strcmp(a->isa, b->isa) != 0) {
+    if (!any_isa && a->isa[0] && b->isa[0] && strcmp(a->isa, b->isa) != 0) {
         snprintf(reason, size, "other work: kernels of %s, now %s (--isa)", a->isa, b->isa);
         return false;
     }
@@ -92,8 +92,8 @@ static bool comparable(BenchComparison *result, const BenchCompareParams *params
                  side[missing].reason);
         return false;
     }
-    return bench_same_work(&side[BENCH_OLD].row, &side[BENCH_NEW].row, sizeof result->reason,
-                           result->reason);
+    return bench_same_work(&side[BENCH_OLD].row, &side[BENCH_NEW].row, params->any_isa,
+                           sizeof result->reason, result->reason);
 }
 
 static BenchTimes times_of(const BenchSide *side, int value)

@@ -24,7 +24,7 @@ typedef struct {
 /* One comparison, of the repeats from `first` on, `turn` of them a process. */
 static void compare(const BenchRow *row, int rounds, int first, int turn, Tally *tally)
 {
-    const BenchCompareParams params = {true, rounds, NAN, 1, false};
+    const BenchCompareParams params = {true, rounds, NAN, 1, false, false};
     BenchAbSamples all = {0};
     BenchComparison *list;
     bool had[BENCH_COMPARISONS] = {false};

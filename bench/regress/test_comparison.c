@@ -99,7 +99,7 @@ TEST(a_slower_stage_is_caught_and_no_other_blamed)
         play(&all, "slow", 10, 1.08, 0.02);
         play(&all, "same", 10, 1, 0.02);
         play(&all, "fast", 10, 0.8, 0.02);
-        const BenchCompareParams params = {true, 10, NAN, 1, false};
+        const BenchCompareParams params = {true, 10, NAN, 1, false, false};
         int count = bench_compare(&all, &params, &list);
         assert_int_equal(count, 3 * BENCH_TIMES);
         assert_int_equal(verdict_of(list, count, "slow", 1 + SM_DAMPING), BENCH_SLOWER);
@@ -122,7 +122,7 @@ TEST(a_build_against_itself_raises_no_alarm)
         BenchComparison *list;
         play(&all, "one", 8, 1, trial % 2 ? 0.3 : 0.02);
         play(&all, "two", 8, 1, trial % 2 ? 0.3 : 0.02);
-        const BenchCompareParams params = {true, 8, NAN, (unsigned long)trial, false};
+        const BenchCompareParams params = {true, 8, NAN, (unsigned long)trial, false, false};
         int count = bench_compare(&all, &params, &list);
         int code = bench_comparisons_exit(list, count);
         alarms += code != SM_OK && code != BENCH_EXIT_NOT_JUDGED;
@@ -134,7 +134,7 @@ TEST(a_build_against_itself_raises_no_alarm)
 
 TEST(beside_a_file_the_threshold_is_wider)
 {
-    const BenchCompareParams params = {false, 5, NAN, 1, false};
+    const BenchCompareParams params = {false, 5, NAN, 1, false, false};
     int alarms = 0;
     for (int trial = 0; trial < 30; trial++) {
         BenchAbSamples all = {0};
@@ -160,7 +160,7 @@ TEST(a_threshold_given_rules)
     BenchAbSamples all = {0};
     BenchComparison *list;
     play(&all, "slow", 8, 1.2, 0.02);
-    BenchCompareParams params = {true, 8, 0.5, 1, false};
+    BenchCompareParams params = {true, 8, 0.5, 1, false, false};
     int count = bench_compare(&all, &params, &list);
     assert_int_equal(verdict_of(list, count, "slow", 1 + SM_DAMPING), BENCH_SAME);
     bench_comparisons_free(list, count);
@@ -184,7 +184,7 @@ TEST(what_cannot_be_compared_says_why)
     wrong->valid = false;
     strcpy(wrong->reason, "goals are off by 1 cell");
     bench_ab_scene(&all, "other")->side[BENCH_OLD].row.particles = 149;
-    const BenchCompareParams params = {true, 3, NAN, 1, false};
+    const BenchCompareParams params = {true, 3, NAN, 1, false, false};
     int count = bench_compare(&all, &params, &list);
     assert_int_equal(verdict_of(list, count, "few", 0), BENCH_TOO_FEW);
     assert_int_equal(verdict_of(list, count, "wrong", 0), BENCH_INCORRECT);
@@ -206,14 +206,15 @@ TEST(what_nobody_could_judge_is_not_ok)
     BenchComparison *list;
     char line[256];
     play(&all, "few", 3, 1, 0.02);
-    const BenchCompareParams few = {true, 3, NAN, 1, false}, noisy = {true, 8, 0.0001, 1, false};
+    const BenchCompareParams few = {true, 3, NAN, 1, false, false},
+                             noisy = {true, 8, 0.0001, 1, false, false};
     BenchRegression found = {.params = &few};
     found.count = bench_compare(&all, &few, &list);
     found.list = list;
     assert_int_equal(bench_comparisons_exit(list, found.count), BENCH_EXIT_NOT_JUDGED);
     bench_regression_summary(&found, sizeof line, line);
     assert_non_null(strstr(line, "no verdict on any of 6 times (0 too noisy"));
-    const BenchCompareParams beside = {false, 1, NAN, 1, false};
+    const BenchCompareParams beside = {false, 1, NAN, 1, false, false};
     assert_non_null(strstr(line, "6 with too few samples): take at least --rounds 7"));
     assert_int_equal(bench_comparisons_rounds(list, found.count, &beside), 3);
     list[2].verdict = BENCH_SAME;
@@ -248,7 +249,7 @@ TEST(epsilon_0_is_stated)
         BenchSide *side = bench_ab_scene(&all, "x")->side;
         side[BENCH_OLD].row.epsilon = cases[c].old;
         side[BENCH_NEW].row.epsilon = cases[c].new;
-        const BenchCompareParams params = {true, 8, 9, 1, false};
+        const BenchCompareParams params = {true, 8, 9, 1, false, false};
         int count = bench_compare(&all, &params, &list);
         assert_int_equal(verdict_of(list, count, "x", 0), cases[c].verdict);
         if (c == 1) assert_string_equal(list[0].reason, "other work: epsilon 0, now 0.5");
@@ -260,7 +261,7 @@ TEST(epsilon_0_is_stated)
 /* Cycles tell where times are too noisy to; a build that has none is no baseline. */
 TEST(cycles_are_judged_instead_of_times)
 {
-    const BenchCompareParams params = {true, 10, NAN, 1, true};
+    const BenchCompareParams params = {true, 10, NAN, 1, true, false};
     BenchAbSamples all = {0};
     BenchComparison *list;
     counted = true;
@@ -291,7 +292,7 @@ TEST(a_stage_without_time_is_left_out)
     BenchAbSamples all = {0};
     BenchComparison *list;
     play(&all, "x", 5, 0, 0.02);
-    const BenchCompareParams params = {true, 5, NAN, 1, false};
+    const BenchCompareParams params = {true, 5, NAN, 1, false, false};
     int count = bench_compare(&all, &params, &list);
     assert_int_equal(count, BENCH_TIMES - 1);
     for (int i = 0; i < count; i++) assert_int_not_equal(list[i].value, 1 + SM_DAMPING);
@@ -312,7 +313,7 @@ static void write_format(BenchRegressionFormat format, bool cycles, const char *
     strcpy(bench_ab_scene(&all, "bad")->side[BENCH_NEW].reason, "1 < 2");
     BenchSide *slow = bench_ab_scene(&all, "slow <&\"> \xc3\xa9")->side;
     if (!cycles) slow[BENCH_OLD].instructions = 1000, slow[BENCH_NEW].instructions = 1100;
-    const BenchCompareParams params = {true, 7, NAN, 1, cycles};
+    const BenchCompareParams params = {true, 7, NAN, 1, cycles, false};
     counted = false;
     BenchRegression *found = sm_alloc(1, sizeof *found);
     found->count = bench_compare(&all, &params, &list);

@@ -217,12 +217,16 @@ TEST(two_files_side_by_side)
     BenchMachine machine;
     SmError error;
     int count;
-    expect("shapebench regress tiny.h5 tiny.h5", 7,
-           "too few samples): take files with more repeats");
+    row_of_tiny(&row, &machine);
+    row.busy = false;
+    store("few.h5", &row, &machine);
+    bench_row_free(&row);
+    expect("shapebench regress few.h5 few.h5", 7, "too few samples): take files with more repeats");
     expect("shapebench tables --scene tiny.cfg --repeats 20 --block 0.1 -o twenty.h5", 0, "tiny");
     assert_int_equal(bench_store_load(path_in("twenty.h5"), &rows, &count, &machine, &error),
                      SM_OK);
     row = rows[0];
+    row.busy = false;
     for (int r = 0; r < row.repeats; r++) { /* the machine's other work is no matter of this test */
         row.total[r] = 1e-4 * (1 + 1e-3 * r);
         for (int s = 0; s < SM_STAGES; s++) row.stage[r][s] = row.total[r] / SM_STAGES;
@@ -244,6 +248,11 @@ TEST(two_files_side_by_side)
     expect("shapebench regress slow.h5 old.h5 --threshold 0.1", 0, "faster");
     expect("shapebench regress old.h5 slow.h5 --scene hand", 6, "neither file has the scene hand");
     expect("shapebench regress old.h5 slow.h5 --format json", 5, "\"stored\": \"slow.h5\"");
+    expect("shapebench regress old.h5 old.h5 --scene tiny.cfg", 0, "not slower in ");
+    row.busy = true;
+    store("busy.h5", &row, &machine);
+    expect("shapebench regress old.h5 busy.h5", 6, "this build has no such scene: it is BUSY");
+    expect("shapebench regress busy.h5 old.h5", 6, "the baseline has no such scene: it is BUSY");
     row.valid = false;
     strcpy(row.reason, "goals are off");
     store("wrong.h5", &row, &machine);
