@@ -10,6 +10,8 @@
 static const double SOFT = 0.25;
 /* Pieces that meet others end this share of their length beyond them. */
 static const double OVERSHOOT = 1e-6;
+/* Of a side of the rectangle with its margin, in which pieces are looked up. */
+enum { BINS = 64 };
 
 static double cross(const double a[2], const double b[2])
 {
@@ -28,12 +30,13 @@ static double length_of(const double a[2])
 
 void ref_cracks_create(const RefChart *chart, double margin, RefCracks *cracks)
 {
-    *cracks = (RefCracks){.chart = chart, .margin = margin, .low = {1, 1}};
+    *cracks = (RefCracks){.chart = chart, .margin = margin, .box = {-1}};
 }
 
 void ref_cracks_free(RefCracks *cracks)
 {
-    sm_free_all(cracks->near, cracks->piece, cracks->arm, cracks->settled);
+    sm_free_all(cracks->bin, cracks->binned, cracks->near, cracks->piece, cracks->arm,
+                cracks->settled);
     *cracks = (RefCracks){.chart = NULL};
 }
 
@@ -63,7 +66,7 @@ static void add_piece(RefCracks *cracks, int arm, const double end[2][2])
                            .changed = cracks->now};
     memcpy(piece.end, end, sizeof piece.end);
     of->last = (int)cracks->pieces;
-    cracks->low[0] = INFINITY; /* what was looked up is so no more */
+    cracks->stale = true;
     sm_make_room(cracks->piece, cracks->piece_room, cracks->pieces + 1);
     cracks->piece[cracks->pieces++] = piece;
 }
@@ -91,30 +94,94 @@ static void add_pieces(RefCracks *cracks, int arm, const double end[2][2])
     }
 }
 
-/* Looks up the pieces that touch the box of two places, and for the next such question those of a
- * box about them that is five times as wide. */
+/* The bins that a box touches: from bin[d] to bin[2 + d]. What is beyond the margin is in the
+ * outermost. */
+static void bins_of(const RefCracks *cracks, const double low[2], const double high[2], int bin[4])
+{
+    const RefChart *chart = cracks->chart;
+    for (int d = 0; d < 2; d++) {
+        double from = chart->low[d] - cracks->margin;
+        double unit = (chart->high[d] + cracks->margin - from) / BINS;
+        bin[d] = (int)fmin(fmax((low[d] - from) / unit, 0), BINS - 1);
+        bin[2 + d] = (int)fmin(fmax((high[d] - from) / unit, 0), BINS - 1);
+    }
+}
+
+static void bins_of_piece(const RefCracks *cracks, const RefCrackPiece *piece, int bin[4])
+{
+    double low[2], high[2];
+    box_of(piece, low, high);
+    bins_of(cracks, low, high, bin);
+}
+
+/* Sorts pieces into bins. */
+static void bin_pieces(RefCracks *cracks)
+{
+    int box[4];
+    if (!cracks->bin) cracks->bin = sm_alloc(BINS * BINS + 1, sizeof *cracks->bin);
+    memset(cracks->bin, 0, (BINS * BINS + 1) * sizeof *cracks->bin);
+    for (int pass = 0; pass < 2; pass++) {
+        for (long p = cracks->pieces - 1; p >= 0; p--) { /* backwards: each bin's rise in the end */
+            bins_of_piece(cracks, cracks->piece + p, box);
+            for (int j = box[1]; j <= box[3]; j++)
+                for (int i = box[0]; i <= box[2]; i++)
+                    if (pass == 0)
+                        cracks->bin[BINS * j + i]++;
+                    else
+                        cracks->binned[--cracks->bin[BINS * j + i]] = (int)p;
+        }
+        if (pass) break;
+        for (int n = 0; n < BINS * BINS; n++) cracks->bin[n + 1] += cracks->bin[n];
+        sm_make_room(cracks->binned, cracks->bin_room, cracks->bin[BINS * BINS]);
+    }
+    cracks->stale = false;
+    cracks->box[0] = -1;
+}
+
+static int by_number(const void *a, const void *b)
+{
+    return *(const int *)a - *(const int *)b;
+}
+
+/* Takes all pieces of these bins, rising. */
+static void gather(RefCracks *cracks, const int box[4])
+{
+    memcpy(cracks->box, box, sizeof cracks->box);
+    cracks->near_count = 0;
+    for (int j = box[1]; j <= box[3] && cracks->pieces; j++) {
+        long from = cracks->bin[BINS * j + box[0]], end = cracks->bin[BINS * j + box[2] + 1];
+        sm_make_room(cracks->near, cracks->near_room, cracks->near_count + end - from);
+        for (long n = from; n < end; n++) cracks->near[cracks->near_count++] = cracks->binned[n];
+    }
+    long all = cracks->near_count;
+    cracks->near_count = 0;
+    if (all > 1) qsort(cracks->near, (size_t)all, sizeof *cracks->near, by_number);
+    for (long n = 0; n < all; n++)
+        if (n == 0 || cracks->near[n] != cracks->near[n - 1])
+            cracks->near[cracks->near_count++] = cracks->near[n];
+}
+
+/* The pieces that touch the box of two places, and others near it, rising: kept for the next such
+ * question are those of a box about them that is three times as wide. */
 static const int *among(const RefCracks *cracks, const double a[2], const double b[2], int *count)
 {
     RefCracks *look = (RefCracks *)cracks;
-    bool inside = true;
-    for (int d = 0; d < 2; d++)
-        inside = inside && fmin(a[d], b[d]) >= look->low[d] && fmax(a[d], b[d]) <= look->high[d];
-    if (!inside) {
-        double far = 2 * fmax(fabs(a[0] - b[0]), fabs(a[1] - b[1]));
-        look->near_count = 0;
+    double low[2], high[2];
+    int box[4];
+    if (look->stale) bin_pieces(look);
+    for (int d = 0; d < 2; d++) {
+        low[d] = fmin(a[d], b[d]);
+        high[d] = fmax(a[d], b[d]);
+    }
+    bins_of(look, low, high, box);
+    if (look->box[0] < 0 || box[0] < look->box[0] || box[1] < look->box[1] ||
+        box[2] > look->box[2] || box[3] > look->box[3]) {
         for (int d = 0; d < 2; d++) {
-            look->low[d] = fmin(a[d], b[d]) - far;
-            look->high[d] = fmax(a[d], b[d]) + far;
+            int wide = 1 + box[2 + d] - box[d];
+            box[d] = box[d] > wide ? box[d] - wide : 0;
+            box[2 + d] = box[2 + d] + wide < BINS ? box[2 + d] + wide : BINS - 1;
         }
-        for (long p = 0; p < look->pieces; p++) {
-            double low[2], high[2];
-            box_of(look->piece + p, low, high);
-            if (low[0] > look->high[0] || high[0] < look->low[0] || low[1] > look->high[1] ||
-                high[1] < look->low[1])
-                continue;
-            sm_make_room(look->near, look->near_room, look->near_count + 1);
-            look->near[look->near_count++] = (int)p;
-        }
+        gather(look, box);
     }
     *count = (int)look->near_count;
     return look->near;
@@ -368,6 +435,7 @@ RefCracks ref_cracks_settled(const RefCracks *cracks)
     if (pieces) memcpy(copy.piece, cracks->piece, pieces * sizeof *copy.piece);
     if (arms) memcpy(copy.arm, cracks->settled, arms * sizeof *copy.arm);
     for (size_t p = 0; p < pieces; p++) copy.piece[p].ahead = copy.piece[p].before;
+    copy.stale = true;
     copy.now = cracks->now;
     ref_cracks_settle(&copy);
     return copy;

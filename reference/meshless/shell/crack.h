@@ -40,9 +40,11 @@ typedef struct {
     RefCrackArm *arm;     /* [arms] */
     int now;              /* counts settlements */
     long settled_pieces, settled_arms, settled_room;
-    RefCrackArm *settled;   /* [settled_arms] the arms at the last one */
-    double low[2], high[2]; /* private: a box, and all pieces whose boxes touch it */
-    long near_count, near_room;
+    RefCrackArm *settled; /* [settled_arms] the arms at the last one */
+    bool stale;           /* private, as is the rest: pieces are not in these bins yet */
+    int *bin, *binned;    /* where each bin's pieces begin, and their numbers */
+    int box[4];           /* bins, and all pieces there */
+    long bin_room, near_count, near_room;
     int *near;
 } RefCracks;
 
@@ -66,9 +68,8 @@ bool ref_cracks_end_ahead(const RefCracks *cracks, int arm, double far);
 /* Ends an arm: nothing gets across any more near where its tip was. */
 void ref_cracks_end(RefCracks *cracks, int arm);
 
-/* What gets from `from` to x of a weight of this reach: RefCut's pass() for nodes.h. Questions
- * about places that are near to each other are quick one after the other: pieces near them are
- * looked up once. Not for several threads at a time. O(pieces near). */
+/* What gets from `from` to x of a weight of this reach: RefCut's pass() for nodes.h. Pieces are
+ * looked up in bins. Not for several threads at a time. O(pieces near). */
 bool ref_cracks_pass(const void *cracks, const double x[3], const double from[3], double reach,
                      double part[6]);
 

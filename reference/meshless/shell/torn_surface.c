@@ -106,10 +106,14 @@ static void part_edges(RefTornSurface *torn, const RefCracked *cracked)
     for (long t = 0; t < torn->triangles; t++)
         for (int k = 0; k < 3; k++) {
             int other = torn->beside[t][k];
-            const double *from = torn->middle[t < other ? t : other], *to = torn->middle[t];
-            if (other > t) to = torn->middle[other];
-            torn->open[t][k] = other < 0 || parted(cracked, from, to);
-            torn->open_edges += torn->open[t][k];
+            bool open = other < 0;
+            if (other > t)
+                open = parted(cracked, torn->middle[t], torn->middle[other]);
+            else if (other >= 0) /* found from there */
+                for (int n = 0; n < 3; n++)
+                    if (torn->beside[other][n] == t) open = torn->open[other][n];
+            torn->open[t][k] = open;
+            torn->open_edges += open;
         }
 }
 
