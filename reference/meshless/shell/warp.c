@@ -10,8 +10,8 @@
 
 /* A place that functions leave less of its area by this share is none. */
 static const double LEAST_AREA = 0.4;
-/* What holds the mean of a piece of a cracked shell, beside the Laplacian. */
-static const double SOFT = 1e-8;
+/* How stiffly nodes of a cracked shell are tied to where u has them, beside the Laplacian. */
+static const double TIE = 1e-6;
 enum { PLACES = REF_WARP_PLACES, LANES = REF_FRAME_SLOPES };
 
 static void release(RefWarp *warp)
@@ -206,11 +206,12 @@ static void share_mass(const RefShell *shell, RefWarp *warp)
     free(sum);
 }
 
-/* Pieces of a cracked shell would each be free to move. */
-static void soften(RefWarp *warp)
+/* Pieces of a cracked shell would each be free to move, and between cracks a few nodes may hang on
+ * the others by next to no slope. */
+static void tie(RefWarp *warp)
 {
     const RefSparse *L = &warp->laplacian.stiffness;
-    for (long n = 0; n < warp->nodes; n++) L->value[L->start[n]] += SOFT * warp->mass[n];
+    for (long n = 0; n < warp->nodes; n++) L->value[L->start[n]] += TIE * warp->mass[n];
 }
 
 SmCode ref_warp_create(const RefShell *shell, RefWarp *warp, SmError *error)
@@ -231,7 +232,7 @@ SmCode ref_warp_create(const RefShell *shell, RefWarp *warp, SmError *error)
     make_laplacian(shell, warp);
     share_mass(shell, warp);
     warp->cut = shell->nodes.cut.pass;
-    if (warp->cut) soften(warp);
+    if (warp->cut) tie(warp);
     SmCode code = ref_warp_hold(warp, &(RefRows){0}, error);
     if (code != SM_OK) ref_warp_free(warp);
     return code;
@@ -475,12 +476,14 @@ void ref_warp_anchor(RefWarp *warp, double (*u)[3])
 
 void ref_warp_pose(RefWarp *warp, const double (*u)[3])
 {
+    double tied = warp->cut ? TIE : 0;
     memset(warp->sum, 0, (size_t)warp->nodes * sizeof *warp->sum);
     for (long c = 0; c < warp->cells; c++) pose_cell(warp, c, u);
     for (long n = 0; n < warp->nodes; n++)
         for (int d = 0; d < 3; d++) {
-            warp->right[n][d] = warp->sum[n][d];
-            warp->pulled[n][d] = warp->drawn[n][d] + warp->sum[n][FORCE + d];
+            warp->right[n][d] = warp->sum[n][d] + tied * warp->mass[n] * u[n][d];
+            warp->pulled[n][d] = warp->drawn[n][d] + warp->sum[n][FORCE + d] +
+                                 tied * warp->mass[n] * warp->answer[n][d];
         }
     solve(warp, (const double(*)[3])warp->right, (const double(*)[3])warp->target, warp->moved);
     match_means(warp, u, warp->moved);
