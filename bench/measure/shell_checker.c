@@ -59,6 +59,10 @@ void bench_shell_row_describe(const BenchRunner *runner, const SmCounts *counts)
         ref_map_kind_name(body->map.kind), options->thickness, body->map.angle_median,
         material->young, material->poisson, material->density, runner->scene->metre,
         counts->build_seconds);
+    printf("of its mesh %ld triangles were dropped, %d rims closed and %d handles cut; %ld of %ld "
+           "integration points are drawn out too far to be stiff\n",
+           body->map.dropped, body->map.closed, body->map.handles, body->sheet.shell.soft,
+           REF_SAMPLES_PER_CELL * body->sheet.shell.tree.leaves);
 }
 
 void bench_shell_row_explain(FILE *file, const BenchRow *row)

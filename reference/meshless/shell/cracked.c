@@ -94,20 +94,22 @@ static void find_lift(RefCracked *cracked)
     ref_shape_free(&shape);
 }
 
-/* Place and area of the whole shell's middle surface; where its functions are not defined, of the
- * chart's, which that was fitted to. */
+/* The place on the whole shell's middle surface, its area over that in the plane and the trace of
+ * its inverse metric; where functions are not defined, of the chart's, which that was fitted to. */
 static void whole_at(const RefCracked *cracked, const double theta[3], RefShape *whole, double x[3],
-                     double *area)
+                     double *area, double *trace)
 {
     const RefChart *chart = &cracked->shell->chart;
     if (ref_mls_at(&cracked->whole, cracked->shell->basis, theta, whole)) {
         RefFrame frame = ref_middle_of((const double(*)[3])cracked->whole_X, whole);
         memcpy(x, frame.x, sizeof frame.x);
         *area = frame.area;
+        *trace = frame.inverse[0] + frame.inverse[1];
     } else {
         double L = chart->factor(chart->data, theta);
         chart->place(chart->data, theta, x);
         *area = L * L;
+        *trace = 2 / *area;
     }
 }
 
@@ -119,7 +121,7 @@ static void take_samples(const RefCracked *cracked, long c, RefShape *shape, Ref
     ref_samples_of(&shell->tree, c, &shell->nodes, shell->basis, shape, samples);
     for (long p = 0; p < samples->count; p++) {
         double x[3], area;
-        whole_at(cracked, samples->theta[p], whole, x, &area);
+        whole_at(cracked, samples->theta[p], whole, x, &area, samples->trace + p);
         samples->area[p] = area * samples->weight[p];
     }
 }
@@ -333,8 +335,8 @@ static void place_parameter(RefCracked *cracked, const RefCrackedCell *cell, int
 {
     const RefShell *shell = cracked->shell;
     const double *lift = cracked->whole_lift[cracked->cell[cell->whole].node[0]];
-    double x[3], area;
-    whole_at(cracked, shell->nodes.position[node], whole, x, &area);
+    double x[3], area, trace;
+    whole_at(cracked, shell->nodes.position[node], whole, x, &area, &trace);
     for (int d = 0; d < 3; d++) shell->X[node][d] = x[d] + ldexp(lift[d], -2 * cell->splits);
 }
 
@@ -524,6 +526,7 @@ static void add_rest(const RefCracked *cracked, long c, const RefSamples *old, B
     RefFieldNorm norm = {cracked->options.thickness, fields->mass_share, cracked->options.material};
     for (long p = 0; p < samples->count; p++) {
         double area = samples->area[p];
+        RefFieldSample sample = {samples->weight[p], area, samples->trace[p]};
         RefFieldPlace new = place_at(samples, p, cracked->shell->X);
         RefFieldPlace was =
             old->count ? place_at(old, p, before->X)
@@ -536,8 +539,7 @@ static void add_rest(const RefCracked *cracked, long c, const RefSamples *old, B
         for (int f = 0; f < fields->count; f++) {
             was.u = (const double(*)[3])before->field[f];
             new.u = (const double(*)[3])fields->field[f];
-            ref_field_rest(&was, &new, samples->weight[p], area, &norm,
-                           (double(*)[3])fields->rest[f]);
+            ref_field_rest(&was, &new, &sample, &norm, (double(*)[3])fields->rest[f]);
         }
     }
 }
@@ -585,6 +587,7 @@ static void remake_stale(RefCracked *cracked, const unsigned char *fresh, unsign
                 ref_samples_of(&shell->tree, c, &shell->nodes, shell->basis, &shape,
                                &cell->samples);
                 memcpy(cell->samples.area, old.area, REF_SAMPLES_PER_CELL * sizeof *old.area);
+                memcpy(cell->samples.trace, old.trace, REF_SAMPLES_PER_CELL * sizeof *old.trace);
             } else
                 take_samples(cracked, c, &shape, &whole, &cell->samples);
             integrate(cracked, cell, &work);

@@ -40,18 +40,19 @@ static void stress_of(const RefFrame *frame, const double strain[6], double area
     }
 }
 
-void ref_field_rest(const RefFieldPlace *old, const RefFieldPlace *new, double weight, double area,
-                    const RefFieldNorm *norm, double (*rest)[3])
+void ref_field_rest(const RefFieldPlace *old, const RefFieldPlace *new,
+                    const RefFieldSample *sample, const RefFieldNorm *norm, double (*rest)[3])
 {
     double value[2][3], strain[2][6], stress[6] = {0}, B[6][3];
     RefFrame frames[2] = {frame_of(old), frame_of(new)};
-    bool stiff = ref_thin_is_stiff(frames + 1, weight, area);
+    double area = sample->area, whole = area / sample->weight;
+    bool stiff = ref_thin_is_stiff(frames + 1, whole, sample->trace);
     if (old->count == 0 || new->count == 0) return;
     ref_field_value(old, value[0]);
     ref_field_value(new, value[1]);
     strain_at(old, frames, strain[0]);
     strain_at(new, frames + 1, strain[1]);
-    bool was_stiff = ref_thin_is_stiff(frames, weight, area);
+    bool was_stiff = ref_thin_is_stiff(frames, whole, sample->trace);
     double scale = frames[1].area / frames[0].area; /* strains count by the metric they are of */
     for (int i = 0; i < 6; i++)
         strain[0][i] = (was_stiff ? scale * strain[0][i] : 0) - strain[1][i];

@@ -24,11 +24,16 @@ typedef struct {
 /* A field's value at a place. */
 void ref_field_value(const RefFieldPlace *place, double value[3]);
 
-/* Adds to `rest`, of the new nodes' parameters, the sum over one sample with this area of
+/* Of a sample: its area in the plane; on the surface before any crack; the trace (samples.h). */
+typedef struct {
+    double weight, area, trace;
+} RefFieldSample;
+
+/* Adds to `rest`, of the new nodes' parameters, the sum over one sample of
  *     B^T D (strains of the old field - of the new) + m rho t phi (old field - new),
  * B, phi and D those of the new functions. Where the new ones leave the surface without an area,
  * the second part alone. */
-void ref_field_rest(const RefFieldPlace *old, const RefFieldPlace *new, double weight, double area,
-                    const RefFieldNorm *norm, double (*rest)[3]);
+void ref_field_rest(const RefFieldPlace *old, const RefFieldPlace *new,
+                    const RefFieldSample *sample, const RefFieldNorm *norm, double (*rest)[3]);
 
 #endif

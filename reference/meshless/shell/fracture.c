@@ -44,7 +44,8 @@ static RefFaceStress stress_at(const RefCracked *cracked, const RefSamples *samp
     double strain[6] = {0}, B[6][3], H[3][3], nu = options->material.poisson;
     RefFrame frame = ref_middle_at((const double(*)[3])cracked->shell->X, count, node, part);
     RefFaceStress face[2] = {{.theta = {samples->theta[p][0], samples->theta[p][1]}}};
-    if (!ref_thin_is_stiff(&frame, samples->weight[p], samples->area[p])) return face[0];
+    if (!ref_thin_is_stiff(&frame, samples->area[p] / samples->weight[p], samples->trace[p]))
+        return face[0];
     for (int n = 0; n < count; n++) {
         ref_thin_strains(&frame, part[n], B);
         for (int i = 0; i < 6; i++) strain[i] += sm_dot(B[i], u[node[n]]);

@@ -113,6 +113,7 @@ long ref_middle_areas(const double (*X)[3], RefSamples *samples)
         RefFrame frame = ref_middle_at(X, (int)(samples->start[p + 1] - from), samples->node + from,
                                        (const double(*)[6])(samples->part + from));
         samples->area[p] = frame.area * samples->weight[p];
+        samples->trace[p] = frame.inverse[0] + frame.inverse[1];
         if (!(samples->area[p] > 0)) return p;
     }
     return -1;

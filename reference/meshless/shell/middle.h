@@ -27,7 +27,7 @@ RefFrame ref_middle_at(const double (*X)[3], int count, const int *node, const d
 
 RefFrame ref_middle_of(const double (*X)[3], const RefShape *shape);
 
-/* Fills in the samples' areas; returns the first without one, or -1. */
+/* Fills in the samples' areas and traces; returns the first without an area, or -1. */
 long ref_middle_areas(const double (*X)[3], RefSamples *samples);
 
 #endif

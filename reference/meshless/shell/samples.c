@@ -13,8 +13,8 @@ enum { ORDER = 3, PARTS = 2, ALONG = ORDER * PARTS };
 
 void ref_samples_free(RefSamples *samples)
 {
-    sm_free_all(samples->theta, samples->weight, samples->area, samples->start, samples->node,
-                samples->part);
+    sm_free_all(samples->theta, samples->weight, samples->area, samples->trace, samples->start,
+                samples->node, samples->part);
     *samples = (RefSamples){0};
 }
 
@@ -131,6 +131,7 @@ static RefSamples create(long points)
     return (RefSamples){.theta = sm_alloc(count, sizeof(double[3])),
                         .weight = sm_alloc(count, sizeof(double)),
                         .area = sm_alloc(count, sizeof(double)),
+                        .trace = sm_alloc(count, sizeof(double)),
                         .start = sm_alloc(count + 1, sizeof(long))};
 }
 

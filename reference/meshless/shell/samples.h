@@ -14,10 +14,11 @@ typedef struct {
     long count;         /* terminal cell by terminal cell */
     double (*theta)[3]; /* [count], with a third coordinate of 0 */
     double *weight;     /* [count] area in the plane, */
-    double *area;       /* [count] and on the middle surface (ref_middle_areas()) */
-    long *start;        /* [count + 1] */
-    int *node;          /* [start[count]] as in RefShape */
-    double (*part)[6];  /* [start[count]] phi, phi,1, phi,2, phi,11, phi,22, phi,12 */
+    double *area;       /* [count] and on the middle surface (ref_middle_areas()), */
+    double *trace; /* [count] of whose inverse metric this is the trace; both before any crack */
+    long *start;   /* [count + 1] */
+    int *node;     /* [start[count]] as in RefShape */
+    double (*part)[6]; /* [start[count]] phi, phi,1, phi,2, phi,11, phi,22, phi,12 */
 } RefSamples;
 
 /* Takes the shape functions after covers were enlarged where they are not defined at a sample. The

@@ -36,7 +36,8 @@ SmCode ref_shell_build(const RefChart *chart, const RefShellOptions *options, Re
         code = ref_middle_fit(&shell->chart, &samples, shell->nodes.count, &shell->X, error);
     if (code == SM_OK)
         code = ref_thin_build((const double(*)[3])shell->X, &samples, shell->nodes.count,
-                              options->thickness, &options->material, &shell->matrices, error);
+                              options->thickness, &options->material, &shell->matrices,
+                              &shell->soft, error);
     ref_samples_free(&samples);
     if (code != SM_OK) ref_shell_free(shell);
     return code;

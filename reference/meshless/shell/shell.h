@@ -28,6 +28,7 @@ typedef struct {
     RefBasis basis;
     double (*X)[3]; /* [nodes] the parameters of the middle surface, as displacements have them */
     RefMatrices matrices;
+    long soft;                   /* samples without stiffness, before any crack (thin.h) */
     RefShellFunctions functions; /* at is NULL: computed where they are wanted */
 } RefShell;
 

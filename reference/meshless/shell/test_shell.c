@@ -191,3 +191,40 @@ TEST(what_is_refused)
     assert_int_equal(ref_shell_build(&chart, &options, &shell, &error), SM_INPUT);
     assert_non_null(strstr(error.text, "no area"));
 }
+
+static void place_drawn_out(const void *data, const double theta[2], double x[3])
+{
+    x[0] = *(const double *)data * theta[0];
+    x[1] = theta[1];
+    x[2] = 0;
+}
+
+/* A map may draw out a surface: a plate that is stretched has the energy E t e^2 area / (2 (1 -
+ * nu^2)) whatever its parameters, and no part of it is soft. */
+TEST(a_map_that_is_not_conformal_costs_no_stiffness)
+{
+    needs_solver();
+    static const double drawn = 12;
+    RefChart chart = square_chart();
+    RefShellOptions options = {
+        .across = 6, .basis = REF_MLS_PLANE_LINEAR, .thickness = thickness, .material = material};
+    RefShell shell;
+    chart.place = place_drawn_out;
+    chart.data = &drawn;
+    shell_of(&chart, &options, &shell);
+    size_t size = 3 * (size_t)shell.nodes.count;
+    double *u = sm_alloc(size, sizeof *u), *f = sm_alloc(size, sizeof *f), energy = 0;
+    for (long n = 0; n < shell.nodes.count; n++) u[3 * n] = 0.01 * shell.X[n][0];
+    ref_sparse_apply(&shell.matrices.stiffness, 1, u, f);
+    for (size_t n = 0; n < size; n++) energy += u[n] * f[n] / 2;
+    double nu = material.poisson;
+    double wanted = material.young * thickness * 0.01 * 0.01 * drawn / (2 * (1 - nu * nu));
+    assert_true(fabs(energy / wanted - 1) < 1e-9);
+    assert_int_equal(shell.soft, 0);
+    ref_shell_free(&shell);
+    sm_free_all(u, f);
+    chart.data = &(const double){1e4}; /* but for one that leaves hardly a line of it */
+    shell_of(&chart, &options, &shell);
+    assert_int_equal(shell.soft, shell.tree.leaves * REF_SAMPLES_PER_CELL);
+    ref_shell_free(&shell);
+}

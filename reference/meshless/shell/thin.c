@@ -6,9 +6,10 @@
 #include "../../../lib/vector.h"
 #include "../motion/frame_sums.h"
 
-/* Functions that leave a surface less than this share of its area, or an inverse metric whose trace
- * is larger than this (2 of a conformal one of the right area), are none that say how it bends. */
-static const double LEAST_AREA = 0.6, MOST_TRACE = 5;
+/* Functions that leave a surface less than this share of its area, or more than so many times the
+ * trace of its inverse metric, are none that say how it bends; nor are any where the trace, times
+ * the area, was above the last, 2 of a conformal map. */
+static const double LEAST_AREA = 0.6, MOST_TRACE = 2.5, MOST_DRAWN = 1000;
 
 void ref_thin_law(const double g[3], double nu, double H[3][3])
 {
@@ -35,10 +36,10 @@ static void factor_of(const double g[3], double nu, double G[3][3])
         }
 }
 
-bool ref_thin_is_stiff(const RefFrame *frame, double weight, double area)
+bool ref_thin_is_stiff(const RefFrame *frame, double area, double trace)
 {
-    double trace = (frame->inverse[0] + frame->inverse[1]) * area;
-    return frame->area * weight > LEAST_AREA * area && trace < MOST_TRACE * weight;
+    return trace * area < MOST_DRAWN && frame->area > LEAST_AREA * area &&
+           frame->inverse[0] + frame->inverse[1] < MOST_TRACE * trace;
 }
 
 void ref_thin_strains(const RefFrame *frame, const double part[6], double B[6][3])
@@ -90,7 +91,7 @@ static bool write_sample(const double (*X)[3], const RefSamples *samples, long p
     double nu = material->poisson, G[3][3], B[6][3], area = samples->area[p];
     double membrane = area * material->young * t / (1 - nu * nu);
     double weight[2] = {sqrt(membrane), sqrt(membrane / 12) * t}, root = sqrt(area * t);
-    bool stiff = ref_thin_is_stiff(&frame, samples->weight[p], area);
+    bool stiff = ref_thin_is_stiff(&frame, area / samples->weight[p], samples->trace[p]);
     for (int e = 0; e < count; e++)
         work->shape[sample * columns_for(nodes) + work->number[node[e]]] += root * part[e][0];
     if (!stiff) return false;
@@ -176,21 +177,25 @@ static void add_element(const RefElement *element, RefPairs *pairs)
     }
 }
 
-static void integrate_all(const double (*X)[3], const RefSamples *samples, double thickness,
+/* Returns how many samples have no stiffness. */
+static long integrate_all(const double (*X)[3], const RefSamples *samples, double thickness,
                           const RefMaterial *material, RefPairs *pairs)
 {
     RefThinWork work = ref_thin_work(pairs->count);
+    long soft = 0;
     for (long c = 0; c < samples->count / REF_SAMPLES_PER_CELL; c++) {
         RefElement element;
-        ref_thin_element(X, samples, c, thickness, material, &work, &element);
+        soft += ref_thin_element(X, samples, c, thickness, material, &work, &element);
         add_element(&element, pairs);
         ref_element_free(&element);
     }
     ref_thin_work_free(&work);
+    return soft;
 }
 
 SmCode ref_thin_build(const double (*X)[3], RefSamples *samples, long nodes, double thickness,
-                      const RefMaterial *material, RefMatrices *matrices, SmError *error)
+                      const RefMaterial *material, RefMatrices *matrices, long *soft,
+                      SmError *error)
 {
     *matrices = (RefMatrices){0};
     SmCode code = ref_material_check(material, error);
@@ -204,7 +209,7 @@ SmCode ref_thin_build(const double (*X)[3], RefSamples *samples, long nodes, dou
         code = sm_fail(error, SM_INPUT,
                        "the shell's middle surface has no area at the parameters (%g, %g)",
                        samples->theta[bad][0], samples->theta[bad][1]);
-    if (code == SM_OK) integrate_all(X, samples, thickness, material, &pairs);
+    if (code == SM_OK) *soft = integrate_all(X, samples, thickness, material, &pairs);
     if (code == SM_OK) ref_pairs_matrices(&pairs, material->density, matrices);
     ref_pairs_free(&pairs);
     return code;

@@ -40,8 +40,11 @@ int ref_thin_element(const double (*X)[3], const RefSamples *samples, long cell,
                      const RefMaterial *material, RefThinWork *work, RefElement *element);
 void ref_element_free(RefElement *element);
 
-/* Whether functions leave the surface enough of its area at a sample for it to be stiff there. */
-bool ref_thin_is_stiff(const RefFrame *frame, double weight, double area);
+/* Whether functions leave the surface at a sample enough of what it was before any crack, by its
+ * area over that in the plane and the trace of its inverse metric, for it to be stiff there; and
+ * that was not drawn out by the map a thousandfold, as where a thin tip has nearly no area in the
+ * plane. */
+bool ref_thin_is_stiff(const RefFrame *frame, double area, double trace);
 
 /* The strains of nodes' parameters: B, three rows of membrane (11, 22, twice 12), three of bending,
  * of a function with these parts. */
@@ -52,8 +55,10 @@ void ref_thin_law(const double inverse[3], double poisson, double H[3][3]);
 
 /* Of a shell of this thickness, over the samples, whose areas it fills in. Neither rotary inertia
  * nor drilling stiffness. The caller frees. Errors: matrices.h's of a material; SM_USAGE, a
- * thickness that is not above 0; SM_INPUT, a surface without area at a sample. */
+ * thickness that is not above 0; SM_INPUT, a surface without area at a sample. `soft` receives how
+ * many samples have no stiffness. */
 SmCode ref_thin_build(const double (*X)[3], RefSamples *samples, long nodes, double thickness,
-                      const RefMaterial *material, RefMatrices *matrices, SmError *error);
+                      const RefMaterial *material, RefMatrices *matrices, long *soft,
+                      SmError *error);
 
 #endif
