@@ -213,11 +213,9 @@ static void bind(SmEngine *engine);
 static void follow_cracks(SmEngine *engine)
 {
     RefShellBody *body = &engine->body;
-    double start = sm_now();
     ref_foot_renew(&body->breaking->cracked, &body->sheet.warp, body->sheet.leant,
                    (const double(*)[2])body->map.theta, CONST(engine->rest), &body->skin,
                    &body->loose);
-    body->carry_seconds = sm_now() - start;
     ref_shape_free(&engine->shape);
     engine->shape = ref_shape_create(&body->sheet.shell.nodes);
     if (engine->handles.count) bind(engine);
@@ -227,7 +225,6 @@ static void shell_step(SmEngine *engine, SmLaps *laps)
 {
     RefShellBody *body = &engine->body;
     bool changed = false;
-    body->carry_seconds = 0;
     if (body->broke) {
         memcpy(engine->before, body->carried, (size_t)engine->count * sizeof *engine->before);
         return;

@@ -37,7 +37,6 @@ typedef struct {
     RefBreaking *breaking; /* NULL: it does not break */
     RefTornSurface torn;   /* what is drawn of one that does */
     bool broke;            /* a crack could not be followed: it stands still from then on */
-    double carry_seconds;  /* of the last step: points' weights where cracks changed */
     RefSkin skin;
     double (*carried)[3]; /* [skin.count] the points now, in the skin's order */
     long loose;           /* points that too few nodes cover */

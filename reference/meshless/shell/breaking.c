@@ -4,8 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../../lib/system/clock.h"
-
 void ref_breaking_free(RefBreaking *breaking)
 {
     if (breaking->sheet) ref_cracked_free(&breaking->cracked);
@@ -55,7 +53,6 @@ SmCode ref_breaking_update(RefBreaking *breaking, SmError *error)
 {
     RefSheet *sheet = breaking->sheet;
     long size = 3 * sheet->shell.nodes.count;
-    double start = sm_now();
     double *field[3] = {copy_field(sheet->steps.u, size), copy_field(sheet->steps.v, size),
                         copy_field(sheet->warp.moved[0], size)};
     double *rest[3] = {breaking->rest[0], breaking->rest[1], NULL};
@@ -63,7 +60,6 @@ SmCode ref_breaking_update(RefBreaking *breaking, SmError *error)
                                field, rest};
     RefCrackedSaved saved = ref_cracked_save(&breaking->cracked);
     ref_cracked_update(&breaking->cracked, &fields);
-    double middle = sm_now();
     breaking->rest[0] = rest[0];
     breaking->rest[1] = rest[1];
     SmCode code = ref_sheet_renew(sheet, field[0], field[1], field[2], error);
@@ -73,20 +69,15 @@ SmCode ref_breaking_update(RefBreaking *breaking, SmError *error)
         ref_cracked_saved_free(&saved);
     } else
         ref_cracked_restore(&breaking->cracked, &saved);
-    breaking->seconds.update = middle - start;
-    breaking->seconds.solver = sm_now() - middle;
     sm_free_all(field[0], field[1], field[2], rest[2]);
     return code;
 }
 
 SmCode ref_breaking_step(RefBreaking *breaking, bool *changed, SmError *error)
 {
-    double start = sm_now();
     ref_sheet_step(breaking->sheet);
-    double middle = sm_now();
     *changed = ref_fracture_grow(&breaking->cracked, &breaking->options,
                                  (const double(*)[3])breaking->sheet->steps.u) > 0;
-    breaking->seconds = (RefBreakingSeconds){middle - start, sm_now() - middle, 0, 0};
     SmCode code = *changed ? ref_breaking_update(breaking, error) : SM_OK;
     *changed = *changed && code == SM_OK;
     return code;

@@ -7,20 +7,11 @@
 #include "fracture.h"
 #include "sheet.h"
 
-/* Seconds of the last step. */
-typedef struct {
-    double motion; /* ref_sheet_step() */
-    double growth; /* stresses, and cracks that go on */
-    double update; /* samples, elements, rows, and what is left of fields */
-    double solver; /* factorisations and projections */
-} RefBreakingSeconds;
-
 typedef struct {
     RefSheet *sheet; /* the caller's */
     RefCracked cracked;
     RefFractureOptions options;
     double *rest[2];
-    RefBreakingSeconds seconds;
 } RefBreaking;
 
 /* Of a sheet whose shell has no cracks. `breaking` must not move in memory. The caller frees it

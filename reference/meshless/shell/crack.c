@@ -261,30 +261,25 @@ static bool enter(const RefChart *chart, double theta[2], bool *turned)
     return true;
 }
 
-RefCrackFate ref_cracks_grow(RefCracks *cracks, int arm, const double to[2])
+void ref_cracks_grow(RefCracks *cracks, int arm, const double to[2])
 {
     double end[2][2], way[2], share = 1;
-    RefCrackFate fate = REF_CRACK_GOES_ON;
     memcpy(end[0], cracks->arm[arm].tip, sizeof end[0]);
     memcpy(end[1], to, sizeof end[1]);
     way_from(end[0], end[1], way);
-    if (first_meeting(cracks, end[0], to, &share)) fate = REF_CRACK_MEETS_CRACK;
-    if (fate == REF_CRACK_MEETS_CRACK)
-        for (int d = 0; d < 2; d++) end[1][d] = end[0][d] + (share + OVERSHOOT) * way[d];
+    bool ends = first_meeting(cracks, end[0], to, &share), turned = false;
+    for (int d = 0; ends && d < 2; d++) end[1][d] = end[0][d] + (share + OVERSHOOT) * way[d];
     double length = length_of(way) * fmin(share, 1), entered[2];
-    if (!(length > 0)) return fate;
+    if (!(length > 0)) return;
     lengthen(cracks, arm, length);
     add_pieces(cracks, arm, (const double(*)[2])end);
-    bool turned = false;
     memcpy(entered, end[1], sizeof entered);
-    if (!enter(cracks->chart, entered, &turned) && fate == REF_CRACK_GOES_ON)
-        fate = REF_CRACK_MEETS_RIM;
+    if (!enter(cracks->chart, entered, &turned)) ends = true;
     RefCrackArm *of = cracks->arm + arm;
     memcpy(of->tip, entered, sizeof of->tip);
     for (int d = 0; d < 2; d++) of->way[d] = (turned ? -1 : 1) * way[d] / length_of(way);
     of->length += length;
-    if (fate != REF_CRACK_GOES_ON) ref_cracks_end(cracks, arm);
-    return fate;
+    if (ends) ref_cracks_end(cracks, arm);
 }
 
 /* Whether the way from `from` to x meets a piece, ends counted in. */

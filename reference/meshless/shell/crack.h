@@ -56,11 +56,9 @@ void ref_cracks_free(RefCracks *cracks);
  * that passes there, or -1. */
 int ref_cracks_start(RefCracks *cracks, const double at[2], int parent);
 
-typedef enum { REF_CRACK_GOES_ON, REF_CRACK_MEETS_RIM, REF_CRACK_MEETS_CRACK } RefCrackFate;
-
 /* Adds a piece from an arm's tip straight to `to`, which may be beyond a seam. Where it meets
  * another crack or a rim, it stops, and the arm is ended. O(pieces). */
-RefCrackFate ref_cracks_grow(RefCracks *cracks, int arm, const double to[2]);
+void ref_cracks_grow(RefCracks *cracks, int arm, const double to[2]);
 
 /* Whether an arm would meet another crack or a rim if it went on straight for `far`. */
 bool ref_cracks_end_ahead(const RefCracks *cracks, int arm, double far);

@@ -142,8 +142,7 @@ static void add_up(RefCracked *cracked, const unsigned char *touched)
     const RefElement **element = sm_alloc((size_t)cells, sizeof(RefElement *));
     for (long c = 0; c < cells; c++)
         element[c] = cracked->cell[c].made ? &cracked->cell[c].element : NULL;
-    cracked->counts.rows_again =
-        ref_element_rows_sum(&cracked->rows, shell->nodes.count, touched, cells, element);
+    ref_element_rows_sum(&cracked->rows, shell->nodes.count, touched, cells, element);
     free(element);
     ref_matrices_free(&shell->matrices);
     ref_element_rows_matrices(&cracked->rows, cracked->options.material.density, &shell->matrices);
@@ -153,8 +152,6 @@ static void count_all(RefCracked *cracked)
 {
     RefCrackedCounts *counts = &cracked->counts;
     counts->cells = cracked->shell->tree.leaves;
-    counts->samples = counts->cells * REF_SAMPLES_PER_CELL;
-    counts->nodes = counts->rows = cracked->shell->nodes.count;
     counts->blind = counts->soft = 0;
     for (long c = 0; c < cracked->shell->tree.count; c++) {
         const RefSamples *samples = &cracked->cell[c].samples;
@@ -370,7 +367,6 @@ static unsigned char *move_nodes(RefCracked *cracked)
             nodes->reach[node] = cell->reach;
             cell->node[n] = node;
             fresh[node] = 1;
-            cracked->counts.nodes_new++;
         }
     }
     free(vacant);
@@ -607,7 +603,7 @@ static void remake_stale(RefCracked *cracked, const unsigned char *fresh, unsign
     ref_shape_free(&whole);
 }
 
-bool ref_cracked_update(RefCracked *cracked, RefCrackedFields *fields)
+void ref_cracked_update(RefCracked *cracked, RefCrackedFields *fields)
 {
     RefShell *shell = cracked->shell;
     long nodes = shell->nodes.count;
@@ -626,15 +622,12 @@ bool ref_cracked_update(RefCracked *cracked, RefCrackedFields *fields)
     remake_stale(cracked, fresh, touched, &before, fields);
     add_up(cracked, touched);
     count_all(cracked);
-    cracked->counts.samples_again = cracked->counts.cells_again * REF_SAMPLES_PER_CELL;
     for (long n = 0; n < shell->nodes.count; n++) /* nodes that nothing sees are at rest */
         for (int f = 0; fields && f < fields->count && !(cracked->rows.row[n].sum[0][0] > 0); f++)
             memset(fields->field[f] + 3 * n, 0, sizeof(double[3]));
     ref_cracks_settle(&cracked->cracks);
     forget(fields, &before);
-    bool others = cracked->counts.nodes_new > 0;
     sm_free_all(fresh, touched);
-    return others;
 }
 
 RefCrackedSaved ref_cracked_save(const RefCracked *cracked)

@@ -34,9 +34,8 @@ typedef struct {
 
 /* How much there is, and what the last update made again. */
 typedef struct {
-    long cells, samples, nodes, rows; /* terminal cells, their samples, nodes, rows of pairs */
-    long cells_again, samples_again, nodes_new, rows_again;
-    long split;       /* cells */
+    long cells, cells_again; /* terminal ones; of these by the last update */
+    long split;
     long blind, soft; /* of all samples: those that see no node; those without stiffness */
 } RefCrackedCounts;
 
@@ -73,8 +72,8 @@ typedef struct {
  * is written to `rest`, so that field + (K + m M)^-1 rest is its projection in the norm of K + m M:
  * this is hardly longer than the field was (samples of cells that were split are others), and the
  * field's sum over the mass, of a velocity the momentum, stays what it was. `fields` may be NULL.
- * Returns whether nodes are others than before. */
-bool ref_cracked_update(RefCracked *cracked, RefCrackedFields *fields);
+ */
+void ref_cracked_update(RefCracked *cracked, RefCrackedFields *fields);
 
 /* What an update changes. */
 typedef struct {

@@ -82,10 +82,9 @@ static void sum_row(long n, const Uses *uses, const RefElement *const *element, 
     for (int b = 0; b < row->count; b++) number[row->partner[b]] = -1;
 }
 
-long ref_element_rows_sum(RefElementRows *rows, long nodes, const unsigned char *touched,
+void ref_element_rows_sum(RefElementRows *rows, long nodes, const unsigned char *touched,
                           long count, const RefElement *const *element)
 {
-    long again = 0;
     Uses uses = find_uses(nodes, count, element);
     int *number = sm_alloc((size_t)nodes, sizeof *number);
     for (long n = 0; n < nodes; n++) number[n] = -1;
@@ -94,12 +93,8 @@ long ref_element_rows_sum(RefElementRows *rows, long nodes, const unsigned char 
         rows->count = nodes;
     }
     for (long n = 0; n < nodes; n++)
-        if (touched[n]) {
-            sum_row(n, &uses, element, number, rows->row + n);
-            again++;
-        }
+        if (touched[n]) sum_row(n, &uses, element, number, rows->row + n);
     sm_free_all(uses.start, uses.element, uses.place, number);
-    return again;
 }
 
 void ref_element_rows_matrices(const RefElementRows *rows, double density, RefMatrices *matrices)

@@ -14,7 +14,7 @@ void ref_shell_free(RefShell *shell)
     *shell = (RefShell){.X = NULL};
 }
 
-double ref_shell_eta(const RefShellOptions *options)
+static double eta_of(const RefShellOptions *options)
 {
     if (options->eta > 0) return options->eta;
     return options->basis == REF_MLS_PLANE_LINEAR ? 4 : 6;
@@ -30,7 +30,7 @@ SmCode ref_shell_build(const RefChart *chart, const RefShellOptions *options, Re
             ? ref_quadtree_of(&shell->chart, options->across, options->nodes, &shell->tree, error)
             : ref_quadtree_build(&shell->chart, options->across, INFINITY, &shell->tree, error);
     if (code != SM_OK) return code;
-    ref_quadtree_nodes(&shell->tree, ref_shell_eta(options), &shell->nodes);
+    ref_quadtree_nodes(&shell->tree, eta_of(options), &shell->nodes);
     code = ref_samples_take(&shell->tree, &shell->nodes, options->basis, &samples, error);
     if (code == SM_OK)
         code = ref_middle_fit(&shell->chart, &samples, shell->nodes.count, &shell->X, error);

@@ -32,9 +32,6 @@ typedef struct {
     RefShellFunctions functions; /* at is NULL: computed where they are wanted */
 } RefShell;
 
-/* The covers' edges that a shell has then, in those of their cells. */
-double ref_shell_eta(const RefShellOptions *options);
-
 /* Builds a shell. The paper's covers are three edges wide, which leaves rims with too few nodes.
  * With 4 and 6 the weights' second derivatives jump where parts of uniform cells meet, which keeps
  * integration good: a supported plate is 0.05% off with 4 and linear functions, 14% with 4.2. But
