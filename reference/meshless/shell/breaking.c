@@ -7,7 +7,7 @@
 void ref_breaking_free(RefBreaking *breaking)
 {
     if (breaking->sheet) ref_cracked_free(&breaking->cracked);
-    sm_free_all(breaking->rest[0], breaking->rest[1]);
+    sm_free_all(breaking->residual[0], breaking->residual[1]);
     *breaking = (RefBreaking){.sheet = NULL};
 }
 
@@ -44,7 +44,7 @@ static void project(RefBreaking *breaking)
     long size = 3 * breaking->sheet->shell.nodes.count;
     double *fields[2] = {steps->u, steps->v};
     for (int f = 0; f < 2; f++) {
-        ref_solver_solve(steps->solver, breaking->rest[f], NULL, steps->other);
+        ref_solver_solve(steps->solver, breaking->residual[f], NULL, steps->other);
         for (long n = 0; n < size; n++) fields[f][n] += steps->other[n];
     }
 }
@@ -55,13 +55,10 @@ SmCode ref_breaking_update(RefBreaking *breaking, SmError *error)
     long size = 3 * sheet->shell.nodes.count;
     double *field[3] = {copy_field(sheet->steps.u, size), copy_field(sheet->steps.v, size),
                         copy_field(sheet->warp.moved[0], size)};
-    double *rest[3] = {breaking->rest[0], breaking->rest[1], NULL};
     RefCrackedFields fields = {ref_steps_mass_share(&sheet->options.damping, sheet->options.h), 3,
-                               field, rest};
+                               field, 2, breaking->residual};
     RefCrackedSaved saved = ref_cracked_save(&breaking->cracked);
     ref_cracked_update(&breaking->cracked, &fields);
-    breaking->rest[0] = rest[0];
-    breaking->rest[1] = rest[1];
     SmCode code = ref_sheet_renew(sheet, field[0], field[1], field[2], error);
     if (code == SM_OK) {
         project(breaking);
@@ -69,7 +66,7 @@ SmCode ref_breaking_update(RefBreaking *breaking, SmError *error)
         ref_cracked_saved_free(&saved);
     } else
         ref_cracked_restore(&breaking->cracked, &saved);
-    sm_free_all(field[0], field[1], field[2], rest[2]);
+    sm_free_all(field[0], field[1], field[2]);
     return code;
 }
 

@@ -482,7 +482,7 @@ static bool is_stale(const RefCracked *cracked, const RefCrackedCell *cell,
 /* Sums over cells that were split: samples of the new ones are others, so that the fields' sums
  * change with them. */
 typedef struct {
-    double (*lost)[3]; /* [fields] */
+    double (*lost)[3]; /* [residuals] */
     double area;
     double *seen; /* [nodes] phi over the new samples' areas */
 } Balance;
@@ -515,8 +515,8 @@ static void balance_old(const RefSamples *old, const Before *before, int fields,
 }
 
 /* What is left of the fields at a cell's samples. */
-static void add_rest(const RefCracked *cracked, long c, const RefSamples *old, Before *before,
-                     const RefCrackedFields *fields, Balance *balance)
+static void add_residual(const RefCracked *cracked, long c, const RefSamples *old, Before *before,
+                         const RefCrackedFields *fields, Balance *balance)
 {
     const RefSamples *samples = &cracked->cell[c].samples;
     RefFieldNorm norm = {cracked->options.thickness, fields->mass_share, cracked->options.material};
@@ -528,14 +528,16 @@ static void add_rest(const RefCracked *cracked, long c, const RefSamples *old, B
             old->count ? place_at(old, p, before->X)
                        : place_before(cracked, cracked->cell[c].from, samples->theta[p], before);
         if (!old->count) {
-            balance_place(&was, -area, before, fields->count, balance);
+            balance_place(&was, -area, before, fields->residuals, balance);
             balance->area += new.count ? area : 0;
             for (int n = 0; n < new.count; n++) balance->seen[new.node[n]] += area * new.part[n][0];
         }
-        for (int f = 0; f < fields->count; f++) {
+        RefFrame frame[2] = {ref_field_frame(&was), ref_field_frame(&new)};
+        for (int f = 0; f < fields->residuals; f++) {
             was.u = (const double(*)[3])before->field[f];
             new.u = (const double(*)[3])fields->field[f];
-            ref_field_rest(&was, &new, &sample, &norm, (double(*)[3])fields->rest[f]);
+            ref_field_residual(&was, &new, frame, &sample, &norm,
+                               (double(*)[3])fields->residual[f]);
         }
     }
 }
@@ -546,9 +548,9 @@ static void settle_balance(const RefCracked *cracked, const RefCrackedFields *fi
 {
     double unit =
         fields->mass_share * cracked->options.material.density * cracked->options.thickness;
-    for (int f = 0; balance->area > 0 && f < fields->count; f++)
+    for (int f = 0; balance->area > 0 && f < fields->residuals; f++)
         for (long n = 0; n < 3 * cracked->shell->nodes.count; n++)
-            fields->rest[f][n] +=
+            fields->residual[f][n] +=
                 unit * balance->seen[n / 3] * balance->lost[f][n % 3] / balance->area;
 }
 
@@ -564,7 +566,7 @@ static void remake_stale(RefCracked *cracked, const unsigned char *fresh, unsign
     RefShell *shell = cracked->shell;
     RefShape shape = ref_shape_create(&shell->nodes), whole = ref_shape_create(&cracked->whole);
     RefThinWork work = ref_thin_work(shell->nodes.count);
-    int count = fields ? fields->count : 0;
+    int count = fields ? fields->residuals : 0;
     Balance balance = {.lost = sm_alloc((size_t)count, sizeof(double[3])),
                        .seen = sm_alloc((size_t)shell->nodes.count, sizeof(double))};
     for (long c = 0; c < shell->tree.count; c++) {
@@ -588,7 +590,7 @@ static void remake_stale(RefCracked *cracked, const unsigned char *fresh, unsign
                 take_samples(cracked, c, &shape, &whole, &cell->samples);
             integrate(cracked, cell, &work);
             touch(&cell->element, touched);
-            if (fields) add_rest(cracked, c, &old, before, fields, &balance);
+            if (fields) add_residual(cracked, c, &old, before, fields, &balance);
             cracked->counts.cells_again++;
         } else {
             cell->nodes = 0;
@@ -614,8 +616,10 @@ void ref_cracked_update(RefCracked *cracked, RefCrackedFields *fields)
     unsigned char *touched = sm_alloc(size, 1);
     for (int f = 0; fields && f < fields->count; f++) {
         fields->field[f] = sm_widen(fields->field[f], 3 * nodes, (long)size, sizeof(double), 0);
-        fields->rest[f] = sm_realloc(fields->rest[f], size, sizeof(double));
-        memset(fields->rest[f], 0, size * sizeof(double));
+    }
+    for (int f = 0; fields && f < fields->residuals; f++) {
+        fields->residual[f] = sm_realloc(fields->residual[f], size, sizeof(double));
+        memset(fields->residual[f], 0, size * sizeof(double));
     }
     memcpy(touched, fresh, (size_t)shell->nodes.count);
     fill_nodes(cracked, fresh, &before, fields);

@@ -63,15 +63,17 @@ void ref_cracked_free(RefCracked *cracked);
 typedef struct {
     double mass_share; /* m, above 0 */
     int count;
-    double **field; /* [count] the caller's, allocated with sm_alloc() */
-    double **rest;  /* [count] likewise, or NULL at first */
+    double **field;    /* [count] the caller's, allocated with sm_alloc() */
+    int residuals;     /* of the first so many fields, */
+    double **residual; /* [residuals] likewise, or NULL at first */
 } RefCrackedFields;
 
 /* After cracks were grown: makes again what that changes, and settles the cracks. A field's nodes
  * keep their parameters, and new ones have what the field was there; what is left of the old field
- * is written to `rest`, so that field + (K + m M)^-1 rest is its projection in the norm of K + m M:
- * this is hardly longer than the field was (samples of cells that were split are others), and the
- * field's sum over the mass, of a velocity the momentum, stays what it was. `fields` may be NULL.
+ * is written to `residual`, so that field + (K + m M)^-1 residual is its projection in the norm of
+ * K + m M: this is hardly longer than the field was (samples of cells that were split are others),
+ * and the field's sum over the mass, of a velocity the momentum, stays what it was. `fields` may be
+ * NULL.
  */
 void ref_cracked_update(RefCracked *cracked, RefCrackedFields *fields);
 

@@ -21,7 +21,7 @@ static void strain_at(const RefFieldPlace *place, const RefFrame *frame, double 
     }
 }
 
-static RefFrame frame_of(const RefFieldPlace *place)
+RefFrame ref_field_frame(const RefFieldPlace *place)
 {
     return ref_middle_at(place->X, place->count, place->node, place->part);
 }
@@ -40,27 +40,27 @@ static void stress_of(const RefFrame *frame, const double strain[6], double area
     }
 }
 
-void ref_field_rest(const RefFieldPlace *old, const RefFieldPlace *new,
-                    const RefFieldSample *sample, const RefFieldNorm *norm, double (*rest)[3])
+void ref_field_residual(const RefFieldPlace *old, const RefFieldPlace *new, const RefFrame frame[2],
+                        const RefFieldSample *sample, const RefFieldNorm *norm,
+                        double (*residual)[3])
 {
     double value[2][3], strain[2][6], stress[6] = {0}, B[6][3];
-    RefFrame frames[2] = {frame_of(old), frame_of(new)};
     double area = sample->area, whole = area / sample->weight;
-    bool stiff = ref_thin_is_stiff(frames + 1, whole, sample->trace);
+    bool stiff = ref_thin_is_stiff(frame + 1, whole, sample->trace);
     if (old->count == 0 || new->count == 0) return;
     ref_field_value(old, value[0]);
     ref_field_value(new, value[1]);
-    strain_at(old, frames, strain[0]);
-    strain_at(new, frames + 1, strain[1]);
-    bool was_stiff = ref_thin_is_stiff(frames, whole, sample->trace);
-    double scale = frames[1].area / frames[0].area; /* strains count by the metric they are of */
+    strain_at(old, frame, strain[0]);
+    strain_at(new, frame + 1, strain[1]);
+    bool was_stiff = ref_thin_is_stiff(frame, whole, sample->trace);
+    double scale = frame[1].area / frame[0].area; /* strains count by the metric they are of */
     for (int i = 0; i < 6; i++)
         strain[0][i] = (was_stiff ? scale * strain[0][i] : 0) - strain[1][i];
-    if (stiff) stress_of(frames + 1, strain[0], area, norm, stress);
+    if (stiff) stress_of(frame + 1, strain[0], area, norm, stress);
     double mass = norm->mass_share * norm->material.density * norm->thickness * area;
     for (int n = 0; n < new->count; n++) {
-        double *sum = rest[new->node[n]];
-        if (stiff) ref_thin_strains(frames + 1, new->part[n], B);
+        double *sum = residual[new->node[n]];
+        if (stiff) ref_thin_strains(frame + 1, new->part[n], B);
         for (int d = 0; d < 3; d++) {
             sum[d] += mass * new->part[n][0] * (value[0][d] - value[1][d]);
             for (int i = 0; stiff && i < 6; i++) sum[d] += B[i][d] * stress[i];

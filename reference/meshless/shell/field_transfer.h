@@ -21,6 +21,9 @@ typedef struct {
     RefMaterial material;
 } RefFieldNorm;
 
+/* The middle surface at a place. */
+RefFrame ref_field_frame(const RefFieldPlace *place);
+
 /* A field's value at a place. */
 void ref_field_value(const RefFieldPlace *place, double value[3]);
 
@@ -29,11 +32,12 @@ typedef struct {
     double weight, area, trace;
 } RefFieldSample;
 
-/* Adds to `rest`, of the new nodes' parameters, the sum over one sample of
+/* Adds to `residual`, of the new nodes' parameters, the sum over one sample of
  *     B^T D (strains of the old field - of the new) + m rho t phi (old field - new),
- * B, phi and D those of the new functions. Where the new ones leave the surface without an area,
- * the second part alone. */
-void ref_field_rest(const RefFieldPlace *old, const RefFieldPlace *new,
-                    const RefFieldSample *sample, const RefFieldNorm *norm, double (*rest)[3]);
+ * B, phi and D those of the new functions; `frame` are both places'. Where the new ones leave the
+ * surface without an area, the second part alone. */
+void ref_field_residual(const RefFieldPlace *old, const RefFieldPlace *new, const RefFrame frame[2],
+                        const RefFieldSample *sample, const RefFieldNorm *norm,
+                        double (*residual)[3]);
 
 #endif

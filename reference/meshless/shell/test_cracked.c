@@ -357,8 +357,9 @@ static void momentum_of(const RefShell *shell, const double *v, double momentum[
 /* Updates the shell and projects two fields, u and v, onto its new functions. */
 static void update(Sheet *sheet, double m, double **u, double **v)
 {
-    double *field[2] = {*u, *v}, *rest[2] = {NULL, NULL};
-    RefCrackedFields fields = {.mass_share = m, .count = 2, .field = field, .rest = rest};
+    double *field[2] = {*u, *v}, *residual[2] = {NULL, NULL};
+    RefCrackedFields fields = {
+        .mass_share = m, .count = 2, .field = field, .residuals = 2, .residual = residual};
     RefSolver *solver;
     SmError error = {0};
     ref_cracked_update(&sheet->cracked, &fields);
@@ -367,9 +368,9 @@ static void update(Sheet *sheet, double m, double **u, double **v)
     if (ref_solver_create(&sheet->shell.matrices, -m, NULL, &solver, &error) != SM_OK)
         fail_msg("%s", error.text);
     for (int f = 0; f < 2; f++) {
-        ref_solver_solve(solver, rest[f], NULL, change);
+        ref_solver_solve(solver, residual[f], NULL, change);
         for (size_t n = 0; n < size; n++) field[f][n] += change[n];
-        free(rest[f]);
+        free(residual[f]);
     }
     *u = field[0];
     *v = field[1];
