@@ -7,12 +7,11 @@
 #include "../../../lib/csr.h"
 #include "../solve/solver.h"
 
-double *ref_harmonic_weights(const RefTriangulation *surface, double least, long *clamped)
+double *ref_harmonic_weights(const RefTriangulation *surface, double least)
 {
     long corners = 3 * surface->triangles;
     double *weight = sm_alloc((size_t)corners, sizeof *weight);
     double *cotangent = sm_alloc((size_t)corners, sizeof *cotangent);
-    *clamped = 0;
     for (long t = 0; t < surface->triangles; t++)
         ref_triangle_shape(surface->length + 3 * t, cotangent + 3 * t);
     for (int c = 0; c < corners; c++) {
@@ -20,7 +19,6 @@ double *ref_harmonic_weights(const RefTriangulation *surface, double least, long
         double sum = cotangent[ref_corner_last(c)];
         if (twin >= 0) sum += cotangent[ref_corner_last(twin)];
         weight[c] = least > 0 ? fmax(sum / 2, least) : sum / 2;
-        *clamped += least > 0 && twin < c && sum / 2 < -1e-6;
     }
     free(cotangent);
     return weight;

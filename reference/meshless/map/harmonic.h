@@ -13,8 +13,8 @@
 /* Weights of edges by corners. With `least` above 0, those that are below it are set to it, so that
  * maps of harmonic forms have no triangle that is turned over (Gortler, Gotsman and Thurston 2006).
  * After ref_triangulation_delaunay() only edges on rims across from wide angles, and few others,
- * are below 0; `clamped` counts those that were set. 0: as they are. The caller frees. */
-double *ref_harmonic_weights(const RefTriangulation *surface, double least, long *clamped);
+ * are below 0. 0: as they are. The caller frees. */
+double *ref_harmonic_weights(const RefTriangulation *surface, double least);
 
 /* Makes `count` forms harmonic: adds differences of functions that are 0 at vertices that are
  * `held` ([vertices], or NULL: none). One factorisation for all. Errors: solver.h's. */

@@ -209,8 +209,7 @@ static SmCode map_torus(const RefTriangulation *surface, const double *weight, d
 static SmCode map_half(const RefTriangulation *twice, double area, int tip, Plane *plane,
                        SmError *error)
 {
-    long clamped;
-    double *weight = ref_harmonic_weights(twice, plane->least, &clamped);
+    double *weight = ref_harmonic_weights(twice, plane->least);
     SmCode code = plane->kind == REF_MAP_SPHERE
                       ? map_torus(twice, weight, 2 * area, tip, plane, error)
                       : map_annulus(twice, weight, tip, plane, error);
@@ -283,26 +282,6 @@ static void measure_angles(const RefTriangulation *surface, const RefPlaced *pla
     map->angle_median = off[corners / 2];
     map->angle_95 = off[corners - 1 - corners / 20];
     free(off);
-}
-
-/* What L is below on 5% and 95% of the area. */
-static void measure_factors(const RefTriangulation *surface, const RefPlaced *placed,
-                            RefSurfaceMap *map)
-{
-    size_t count = (size_t)surface->triangles;
-    double(*both)[2] = sm_alloc(count, sizeof *both), cotangent[3], sum = 0, so_far = 0;
-    for (size_t t = 0; t < count; t++) {
-        both[t][1] = ref_triangle_shape(surface->length + 3 * t, cotangent) / 2;
-        both[t][0] = sqrt(both[t][1] / fmax(fabs(plane_area(placed + t)), 1e-300));
-        sum += both[t][1];
-    }
-    qsort(both, count, sizeof *both, by_value);
-    for (size_t t = 0; t < count; t++) {
-        so_far += both[t][1];
-        if (so_far <= 0.05 * sum || t == 0) map->factor_low = both[t][0];
-        if (so_far <= 0.95 * sum || t == 0) map->factor_high = both[t][0];
-    }
-    free(both);
 }
 
 /* A triangle's images that reach into the rectangle, appended. */
@@ -507,7 +486,6 @@ static void finish(const Plane *plane, RefSurfaceMap *map)
     for (size_t t = 0; t < count; t++) placed[t] = place_triangle(plane, (int)t);
     find_factors(placed, on);
     measure_angles(&on->triangles, placed, map);
-    measure_factors(&on->triangles, placed, map);
     for (size_t t = 0; t < count; t++) {
         double cotangent[3];
         placed[t].value = ref_triangle_shape(on->triangles.length + 3 * t, cotangent) / 2;
@@ -560,10 +538,10 @@ static void plane_free(Plane *plane)
 
 /* With weights that are not below `least`. */
 static SmCode find_plane(const RefTriangulation *surface, double least, RefMapKind kind,
-                         Plane *plane, long *clamped, SmError *error)
+                         Plane *plane, SmError *error)
 {
     SmCode code = SM_OK;
-    double *weight = ref_harmonic_weights(surface, least, clamped);
+    double *weight = ref_harmonic_weights(surface, least);
     *plane = (Plane){.surface = surface, .kind = kind, .least = least};
     switch (kind) {
     case REF_MAP_DISK:
@@ -604,10 +582,10 @@ static SmCode map_any(const char *name, RefSurfaceMap *map, SmError *error)
             "tube with two, or a closed surface with one handle at most; close or cut "
             "what is more",
             name, surface->genus, surface->rims, surface->rims == 1 ? "" : "s");
-    SmCode code = find_plane(surface, 0, kind, &plane, &map->clamped, error);
+    SmCode code = find_plane(surface, 0, kind, &plane, error);
     if (code == SM_OK && turns_over(&plane, surface->triangles)) {
         plane_free(&plane);
-        code = find_plane(surface, 1e-4, kind, &plane, &map->clamped, error);
+        code = find_plane(surface, 1e-4, kind, &plane, error);
     }
     map->kind = plane.kind;
     if (code == SM_OK) finish(&plane, map);
@@ -647,7 +625,7 @@ static SmCode map_mesh(const SmMesh *mesh, const char *name, double share, long 
             map->closed += ref_triangulation_close(surface, largest_hole, 0, 0);
         if (surface->rims == 1) /* which needs four corners */
             map->closed += ref_triangulation_close(surface, 0, 3, INFINITY);
-        map->turned = ref_triangulation_delaunay(surface);
+        ref_triangulation_delaunay(surface);
         ref_triangulation_split(surface);
         map->triangles = surface->triangles;
         code = map_any(name, map, error);

@@ -36,12 +36,10 @@ typedef struct {
     /* Of the triangulation's angles, on the surface and in the plane: the median of the differences
      * and what 95% of them are below, in degrees. */
     double angle_median, angle_95;
-    double factor_low, factor_high; /* what L is below on 5% and 95% of the area */
     long dropped;          /* the mesh's triangles that are doubled, or of small other pieces */
     int handles;           /* that were cut */
     int closed;            /* short rims, taken for holes of a scan and closed */
     long triangles, flips; /* flips: turned over in the plane, or collapsed */
-    long turned, clamped;  /* edges that were turned, and weights set to the least */
     double seconds;
     struct RefMapSurface *surface; /* private */
 } RefSurfaceMap;

@@ -370,16 +370,16 @@ static void close_rim(RefTriangulation *surface, int first, long edges, const do
 int ref_triangulation_close(RefTriangulation *surface, double limit, long most, double few_limit)
 {
     double unit = sqrt(ref_triangulation_area(surface)), length, middle[3];
-    long corners = 3 * surface->triangles;
-    int closed = 0;
+    int closed = 0, *first = sm_alloc((size_t)surface->rims, sizeof *first);
+    for (long c = 3 * surface->triangles - 1; c >= 0; c--)
+        if (surface->rim[c] >= 0) first[surface->rim[c]] = (int)c;
     for (int rim = 0; rim < surface->rims; rim++) {
-        int first = 0;
-        while (first < corners && surface->rim[first] != rim) first++;
-        long edges = measure_rim(surface, first, &length, middle);
+        long edges = measure_rim(surface, first[rim], &length, middle);
         if (length > (edges > most ? limit : fmax(limit, few_limit)) * unit) continue;
-        close_rim(surface, first, edges, middle);
+        close_rim(surface, first[rim], edges, middle);
         closed++;
     }
+    free(first);
     free(surface->rim);
     count_rims(surface);
     return closed;
@@ -511,7 +511,7 @@ static bool improves(const RefTriangulation *surface, int corner)
            !needs_edges(surface, twin) && !joined(surface, tip, surface->vertex[other]);
 }
 
-long ref_triangulation_delaunay(RefTriangulation *surface)
+void ref_triangulation_delaunay(RefTriangulation *surface)
 {
     long corners = 3 * surface->triangles, count = corners, turned = 0, most = 20 * corners;
     int *stack = sm_alloc((size_t)corners, sizeof *stack);
@@ -539,7 +539,6 @@ long ref_triangulation_delaunay(RefTriangulation *surface)
     begin_fans(surface);
     free(surface->rim);
     count_rims(surface);
-    return turned;
 }
 
 /* Puts a vertex in the middle of the edge a-b of triangles a b c and b a d: they become a m c and

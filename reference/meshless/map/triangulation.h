@@ -74,9 +74,8 @@ double ref_triangulation_area(const RefTriangulation *surface);
 
 /* Turns edges until the two angles across each add up to half a turn at most: the Delaunay
  * triangulation of the surface's own vertices (Bobenko and Springborn 2007). Cotangent weights are
- * then not negative. Edges that would join what an edge joins already are left. Returns how many
- * were turned. */
-long ref_triangulation_delaunay(RefTriangulation *surface);
+ * then not negative. Edges that would join what an edge joins already are left. */
+void ref_triangulation_delaunay(RefTriangulation *surface);
 
 /* Halves edges inside that join two vertices of one rim, so that nothing lies between an edge and a
  * straight rim; returns how many. */

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../../lib/vector.h"
 #include "frame_sums.h"
 
 enum { BLOCK = 64, LANES = REF_SKIN_LANES };
@@ -229,8 +230,7 @@ static int nearest_in_body(const void *data, long point)
     int best = 0;
     double least = INFINITY;
     for (long n = 0; n < nodes->count; n++) {
-        double square = 0;
-        for (int d = 0; d < 3; d++) square += pow(nodes->position[n][d] - in->x[point][d], 2);
+        double square = sm_square_between(nodes->position[n], in->x[point]);
         if (square < least) {
             least = square;
             best = (int)n;

@@ -64,3 +64,18 @@ bool ref_chart_enter(const RefChart *chart, double theta[2])
     }
     return false;
 }
+
+void ref_chart_image(const RefChart *chart, const double theta[2], const double near[2],
+                     double image[2])
+{
+    double least = hypot(theta[0] - near[0], theta[1] - near[1]);
+    memcpy(image, theta, 2 * sizeof *image);
+    for (int s = 0; s < chart->seams; s++) {
+        double there[2];
+        ref_seam_cross(chart->seam + s, theta, there);
+        double far = hypot(there[0] - near[0], there[1] - near[1]);
+        if (far >= least) continue;
+        least = far;
+        memcpy(image, there, sizeof there);
+    }
+}

@@ -197,16 +197,9 @@ bool ref_cracked_side(const RefCracked *cracked, const double theta[2], const do
                       RefShape *shape)
 {
     int c = ref_quadtree_at(&cracked->shell->tree, eye), n = sample_beside(cracked, c, eye);
-    double image[2] = {theta[0], theta[1]};
+    double image[2];
     if (n < 0) return false;
-    for (int s = 0; s < cracked->cracks.chart->seams; s++) {
-        double there[2];
-        ref_seam_cross(cracked->cracks.chart->seam + s, theta, there);
-        if (hypot(there[0] - eye[0], there[1] - eye[1]) >=
-            hypot(image[0] - eye[0], image[1] - eye[1]))
-            continue;
-        memcpy(image, there, sizeof there);
-    }
+    ref_chart_image(cracked->cracks.chart, theta, eye, image);
     ref_samples_expand(&cracked->cell[c].samples, n, image, shape);
     return shape->count > 0;
 }

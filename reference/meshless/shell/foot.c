@@ -29,8 +29,7 @@ static int nearest(const void *data, long point)
     int best = 0;
     double least = INFINITY;
     for (long n = 0; n < feet->warp->nodes; n++) {
-        double square = 0;
-        for (int d = 0; d < 3; d++) square += pow(feet->warp->X[n][d] - feet->x[point][d], 2);
+        double square = sm_square_between(feet->warp->X[n], feet->x[point]);
         if (square < least) {
             least = square;
             best = (int)n;

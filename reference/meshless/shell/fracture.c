@@ -152,11 +152,11 @@ static int grow_tips(RefCracked *cracked, const RefFractureOptions *options,
         const RefCrackArm arm = cracks->arm[a];
         double edge = edge_at(cracked, arm.tip), way[2];
         if (!arm.open || arm.last < 0) continue;
-        RefFaceStress mean = mean_before(cracked, &arm, TIP_CELLS * edge, stress, count);
         if (ref_cracks_end_ahead(cracks, a, edge)) {
             made += advance(cracked, a, arm.way, 0);
             continue;
         }
+        RefFaceStress mean = mean_before(cracked, &arm, TIP_CELLS * edge, stress, count);
         if (!(mean.principal > options->strength)) continue;
         steer(arm.way, mean.along, way);
         bool branches = options->branching > 0 &&

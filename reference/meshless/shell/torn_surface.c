@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../../lib/mesh/edge.h"
 #include "../../../lib/vector.h"
 
 void ref_torn_free(RefTornSurface *torn)
@@ -12,54 +13,22 @@ void ref_torn_free(RefTornSurface *torn)
     *torn = (RefTornSurface){.vertices = 0};
 }
 
-/* Of a place and what it is beyond seams, the one that is nearest to `near`. */
-static void nearest_image(const RefChart *chart, const double theta[2], const double near[2],
-                          double image[2])
-{
-    double least = hypot(theta[0] - near[0], theta[1] - near[1]);
-    memcpy(image, theta, 2 * sizeof *image);
-    for (int s = 0; s < chart->seams; s++) {
-        double there[2];
-        ref_seam_cross(chart->seam + s, theta, there);
-        double far = hypot(there[0] - near[0], there[1] - near[1]);
-        if (far >= least) continue;
-        least = far;
-        memcpy(image, there, sizeof there);
-    }
-}
-
-typedef struct {
-    int low, high;
-    long side; /* three times the triangle, and the corner that the edge goes from */
-} Edge;
-
-static int by_ends(const void *a, const void *b)
-{
-    const Edge *p = a, *q = b;
-    if (p->low != q->low) return p->low < q->low ? -1 : 1;
-    if (p->high != q->high) return p->high < q->high ? -1 : 1;
-    return (p->side > q->side) - (p->side < q->side);
-}
-
 /* Edges that two triangles have join them; those of more are left open. */
 static void join(RefTornSurface *torn)
 {
     long edges = 3 * torn->triangles;
-    Edge *edge = sm_alloc((size_t)edges, sizeof *edge);
+    SmEdge *edge = sm_alloc((size_t)edges, sizeof *edge);
     for (long e = 0; e < edges; e++) {
-        int a = torn->whole[e / 3][e % 3], b = torn->whole[e / 3][(e + 1) % 3];
-        edge[e] = (Edge){a < b ? a : b, a < b ? b : a, e};
+        edge[e] = sm_edge(torn->whole[e / 3], (int)(e % 3), (int)e);
         torn->beside[e / 3][e % 3] = -1;
     }
-    qsort(edge, (size_t)edges, sizeof *edge, by_ends);
+    qsort(edge, (size_t)edges, sizeof *edge, sm_compare_edges);
     for (long e = 0, end; e < edges; e = end) {
-        for (end = e + 1;
-             end < edges && edge[end].low == edge[e].low && edge[end].high == edge[e].high;)
-            end++;
+        for (end = e + 1; end < edges && sm_edges_same(edge + end, edge + e);) end++;
         if (end - e != 2) continue;
-        long p = edge[e].side, q = edge[e + 1].side;
-        torn->beside[p / 3][p % 3] = (int)(q / 3);
-        torn->beside[q / 3][q % 3] = (int)(p / 3);
+        int p = edge[e].corner, q = edge[e + 1].corner;
+        torn->beside[p / 3][p % 3] = q / 3;
+        torn->beside[q / 3][q % 3] = p / 3;
     }
     free(edge);
 }
@@ -83,7 +52,7 @@ void ref_torn_create(const RefChart *chart, long vertices, long triangles, const
         memcpy(torn->corner[t], triangle[t], sizeof *triangle);
         for (int k = 0; k < 3; k++) {
             double image[2];
-            nearest_image(chart, theta[triangle[t][k]], first, image);
+            ref_chart_image(chart, theta[triangle[t][k]], first, image);
             for (int d = 0; d < 2; d++) torn->middle[t][d] += image[d] / 3;
             torn->open[t][k] = torn->beside[t][k] < 0;
             torn->open_edges += torn->open[t][k];
@@ -96,7 +65,7 @@ void ref_torn_create(const RefChart *chart, long vertices, long triangles, const
 static bool parted(const RefCracked *cracked, const double middle[2], const double place[2])
 {
     double image[2];
-    nearest_image(cracked->cracks.chart, place, middle, image);
+    ref_chart_image(cracked->cracks.chart, place, middle, image);
     return ref_cracks_part(&cracked->cracks, middle, image);
 }
 

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "../../../lib/test_frame.h"
+#include "../../../lib/test_random.h"
 #include "dense.h"
 #define ref_dense_definite plain_definite
 #define ref_dense_any      plain_any
@@ -14,17 +15,11 @@ bool plain_any(int n, double *A, double *b);
 
 enum { MOST = 40 };
 
-static double noise(unsigned *seed)
-{
-    *seed = *seed * 1664525u + 1013904223u;
-    return (double)(*seed >> 8) / (1 << 23) - 1;
-}
-
 /* A random matrix, or that times its transpose. */
 static void fill(int n, bool definite, unsigned *seed, double *A)
 {
     double B[MOST * MOST];
-    for (int i = 0; i < n * n; i++) B[i] = A[i] = noise(seed);
+    for (int i = 0; i < n * n; i++) B[i] = A[i] = random_between(seed, -1, 1);
     for (int i = 0; i < n && definite; i++)
         for (int j = 0; j < n; j++) {
             A[n * i + j] = i == j ? 0.1 : 0;
@@ -40,7 +35,7 @@ TEST(both_find_what_was_put_in)
             bool definite = kind % 2, plain = kind / 2;
             double A[MOST * MOST], x[MOST], b[MOST] = {0}, most = 0;
             fill(n, definite, &seed, A);
-            for (int i = 0; i < n; i++) x[i] = noise(&seed);
+            for (int i = 0; i < n; i++) x[i] = random_between(&seed, -1, 1);
             for (int i = 0; i < n; i++)
                 for (int j = 0; j < n; j++) b[i] += A[n * i + j] * x[j];
             assert_true(definite ? (plain ? plain_definite : ref_dense_definite)(n, A, b)
