@@ -204,6 +204,14 @@ bool ref_cracked_side(const RefCracked *cracked, const double theta[2], const do
     return shape->count > 0;
 }
 
+int ref_cracked_node(const RefCracked *cracked, const double theta[2])
+{
+    int c = ref_quadtree_at(&cracked->shell->tree, theta), n = sample_beside(cracked, c, theta);
+    const RefSamples *samples = &cracked->cell[c].samples;
+    return n < 0 || samples->start[n] == samples->start[n + 1] ? -1
+                                                               : samples->node[samples->start[n]];
+}
+
 bool ref_cracked_again(const RefCracked *cracked, long cell)
 {
     int child = cracked->shell->tree.cell[cell].child;

@@ -99,6 +99,9 @@ void ref_cracked_saved_free(RefCrackedSaved *saved);
 bool ref_cracked_side(const RefCracked *cracked, const double theta[2], const double eye[2],
                       RefShape *shape);
 
+/* One of the nodes that move a place; -1: none does. */
+int ref_cracked_node(const RefCracked *cracked, const double theta[2]);
+
 /* Whether the last update took samples of a cell again, or of one that is part of it. */
 bool ref_cracked_again(const RefCracked *cracked, long cell);
 

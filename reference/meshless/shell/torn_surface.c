@@ -5,11 +5,13 @@
 #include <string.h>
 
 #include "../../../lib/mesh/edge.h"
+#include "../../../lib/pieces.h"
 #include "../../../lib/vector.h"
 
 void ref_torn_free(RefTornSurface *torn)
 {
-    sm_free_all(torn->beside, torn->middle, torn->corner, torn->open, torn->of, torn->eye);
+    sm_free_all(torn->crumb, torn->beside, torn->middle, torn->corner, torn->open, torn->of,
+                torn->eye);
     *torn = (RefTornSurface){.vertices = 0};
 }
 
@@ -45,6 +47,7 @@ void ref_torn_create(const RefChart *chart, long vertices, long triangles, const
                              .beside = sm_alloc(count, sizeof *torn->beside),
                              .middle = sm_alloc(count, sizeof *torn->middle),
                              .corner = sm_alloc(count, sizeof *torn->corner),
+                             .crumb = sm_alloc(count, sizeof *torn->crumb),
                              .open = sm_alloc(count, sizeof *torn->open)};
     join(torn);
     for (long t = 0; t < triangles; t++) {
@@ -69,21 +72,91 @@ static bool parted(const RefCracked *cracked, const double middle[2], const doub
     return ref_cracks_part(&cracked->cracks, middle, image);
 }
 
-static void part_edges(RefTornSurface *torn, const RefCracked *cracked)
+/* Pieces of the shell: of its nodes, of cells (SEVERAL: not one alone), of triangles' middles and
+ * of vertices; -1: none. */
+typedef struct {
+    SmPieces nodes;
+    int *cell, *triangle, *vertex;
+} Pieces;
+
+enum { SEVERAL = -2 };
+
+/* What samples see together hangs together. */
+static void link_nodes(const RefCracked *cracked, SmPieces *pieces)
 {
-    torn->open_edges = 0;
+    sm_pieces_init(cracked->shell->nodes.count, pieces);
+    for (long c = 0; c < cracked->shell->tree.count; c++) {
+        const RefSamples *samples = &cracked->cell[c].samples;
+        for (long s = 0; s < samples->count; s++)
+            for (long e = samples->start[s] + 1; e < samples->start[s + 1]; e++)
+                sm_pieces_link(pieces, samples->node[samples->start[s]], samples->node[e]);
+    }
+    sm_pieces_finish(pieces, NULL, cracked->shell->nodes.count);
+}
+
+static int piece_of_cell(const RefSamples *samples, const SmPieces *pieces)
+{
+    int piece = -1;
+    for (long s = 0; s < samples->count; s++) {
+        if (samples->start[s] == samples->start[s + 1]) return SEVERAL;
+        int own = pieces->piece[samples->node[samples->start[s]]];
+        if (piece >= 0 && own != piece) return SEVERAL;
+        piece = own;
+    }
+    return piece;
+}
+
+static int piece_at(const RefCracked *cracked, const Pieces *pieces, const double theta[2])
+{
+    int piece = pieces->cell[ref_quadtree_at(&cracked->shell->tree, theta)];
+    int node = piece == SEVERAL ? ref_cracked_node(cracked, theta) : -1;
+    return piece != SEVERAL ? piece : node < 0 ? -1 : pieces->nodes.piece[node];
+}
+
+static Pieces find_pieces(const RefTornSurface *torn, const RefCracked *cracked)
+{
+    Pieces pieces = {.cell = sm_alloc((size_t)cracked->shell->tree.count, sizeof(int)),
+                     .triangle = sm_alloc((size_t)torn->triangles, sizeof(int)),
+                     .vertex = sm_alloc((size_t)torn->vertices, sizeof(int))};
+    link_nodes(cracked, &pieces.nodes);
+    if (pieces.nodes.count == 1 && !cracked->counts.blind) return pieces; /* all 0 */
+    for (long c = 0; c < cracked->shell->tree.count; c++)
+        pieces.cell[c] = piece_of_cell(&cracked->cell[c].samples, &pieces.nodes);
     for (long t = 0; t < torn->triangles; t++)
+        pieces.triangle[t] = piece_at(cracked, &pieces, torn->middle[t]);
+    for (long v = 0; v < torn->vertices; v++)
+        pieces.vertex[v] = piece_at(cracked, &pieces, torn->theta[v]);
+    return pieces;
+}
+
+static void free_pieces(Pieces *pieces)
+{
+    sm_pieces_free(&pieces->nodes);
+    sm_free_all(pieces->cell, pieces->triangle, pieces->vertex);
+}
+
+/* Crumbs are what no node moves. Two pieces may be apart though cracks end a little before they
+ * meet. */
+static void part_edges(RefTornSurface *torn, const RefCracked *cracked, const Pieces *pieces)
+{
+    const int *piece = pieces->triangle;
+    torn->open_edges = torn->crumbs = 0;
+    for (long t = 0; t < torn->triangles; t++) {
+        torn->crumb[t] = piece[t] < 0;
+        torn->crumbs += torn->crumb[t];
         for (int k = 0; k < 3; k++) {
             int other = torn->beside[t][k];
             bool open = other < 0;
             if (other > t)
-                open = parted(cracked, torn->middle[t], torn->middle[other]);
+                open = piece[t] != piece[other] ||
+                       parted(cracked, torn->middle[t], torn->middle[other]);
             else if (other >= 0) /* found from there */
                 for (int n = 0; n < 3; n++)
                     if (torn->beside[other][n] == t) open = torn->open[other][n];
             torn->open[t][k] = open;
-            torn->open_edges += open;
+            torn->open_edges += open && !torn->crumb[t];
         }
+    }
 }
 
 static int corner_of(const int triangle[3], int vertex)
@@ -132,13 +205,16 @@ bool ref_torn_update(RefTornSurface *torn, const RefCracked *cracked)
     bool *done = sm_alloc(3 * size, sizeof *done);
     bool *home = sm_alloc((size_t)torn->vertices, sizeof *home);
     torn->copies = 0;
-    part_edges(torn, cracked);
+    Pieces pieces = find_pieces(torn, cracked);
+    part_edges(torn, cracked, &pieces);
     for (int pass = 0; pass < 2; pass++)
         for (long t = 0; t < torn->triangles; t++)
             for (int k = 0; k < 3; k++) {
                 int v = torn->whole[t][k];
-                if (done[3 * t + k]) continue;
-                bool sees = !home[v] && !parted(cracked, torn->middle[t], torn->theta[v]);
+                if (torn->crumb[t]) torn->corner[t][k] = v;
+                if (torn->crumb[t] || done[3 * t + k]) continue;
+                bool sees = !home[v] && pieces.triangle[t] == pieces.vertex[v] &&
+                            !parted(cracked, torn->middle[t], torn->theta[v]);
                 if (pass == 0 && !sees) continue;
                 spread(torn, t, v, pass == 0 ? v : add_copy(torn, v, torn->middle[t]), done);
                 home[v] = true;
@@ -146,25 +222,28 @@ bool ref_torn_update(RefTornSurface *torn, const RefCracked *cracked)
     bool changed = memcmp(corner, torn->corner, size * sizeof *corner) != 0 ||
                    memcmp(open, torn->open, size * sizeof *open) != 0;
     sm_free_all(done, home, corner, open);
+    free_pieces(&pieces);
     return changed;
 }
 
 SmMesh ref_torn_mesh(const RefTornSurface *torn)
 {
     int sheet = (int)(torn->vertices + torn->copies);
-    SmMesh mesh = sm_mesh_new(2 * (long)sheet, 2 * torn->triangles + 2 * torn->open_edges);
-    long next = 2 * torn->triangles;
+    long drawn = torn->triangles - torn->crumbs, next = 2 * drawn, made = 0;
+    SmMesh mesh = sm_mesh_new(2 * (long)sheet, next + 2 * torn->open_edges);
     for (long t = 0; t < torn->triangles; t++) {
         const int *corner = torn->corner[t];
+        if (torn->crumb[t]) continue;
         for (int k = 0; k < 3; k++) {
             int a = corner[k], b = corner[(k + 1) % 3];
-            mesh.triangle[2 * t][k] = a;
-            mesh.triangle[2 * t + 1][2 - k] = sheet + a;
+            mesh.triangle[made][k] = a;
+            mesh.triangle[made + 1][2 - k] = sheet + a;
             if (!torn->open[t][k]) continue;
             const int wall[2][3] = {{b, a, sheet + a}, {b, sheet + a, sheet + b}};
             memcpy(mesh.triangle[next], wall, sizeof wall);
             next += 2;
         }
+        made += 2;
     }
     return mesh;
 }
@@ -199,6 +278,7 @@ void ref_torn_place(const RefTornSurface *torn, const RefCracked *cracked, const
     for (long t = 0; t < torn->triangles; t++) {
         const int *k = torn->corner[t];
         double normal[3];
+        if (torn->crumb[t]) continue;
         sm_area_vector(point[k[0]], point[k[1]], point[k[2]], normal);
         for (int n = 0; n < 3; n++)
             for (int d = 0; d < 3; d++) inner[k[n]][d] += normal[d];

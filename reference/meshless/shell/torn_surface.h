@@ -1,7 +1,9 @@
 /* torn_surface.h - the triangles of a surface that a cracked shell carries. They come apart where a
- * crack passes between two of them: a vertex that is on several sides then has a copy for each but
- * the one it lies on. What is drawn are two sheets, a thickness apart, closed along edges where the
- * surface has come apart or ends (meshless section 4.2 says that surface points are split, too). */
+ * crack passes between two of them, and where they move with different pieces: a vertex that is on
+ * several sides then has a copy for each but the one it lies on. Where cracks leave no node,
+ * triangles are crumbs, which are left out. What is drawn are two sheets, a thickness apart, closed
+ * along edges where the surface has come apart or ends (meshless section 4.2 says that surface
+ * points are split, too). */
 #ifndef REF_TORN_SURFACE_H
 #define REF_TORN_SURFACE_H
 
@@ -18,10 +20,11 @@ typedef struct {
     double (*middle)[2];      /* [triangles] where a triangle is in the plane */
     int (*corner)[3];         /* [triangles] vertices, and behind them copies */
     bool (*open)[3];          /* [triangles] edges from corner k on along which nothing is */
+    bool *crumb;              /* [triangles] no node moves it: it is not drawn */
     long copies, room, eye_room;
     int *of;          /* [copies] the vertex */
     double (*eye)[2]; /* [copies] where it is seen from */
-    long open_edges;
+    long open_edges, crumbs;
 } RefTornSurface;
 
 /* Whole at first. The arrays have to live as long. The caller frees. O(triangles log triangles). */
