@@ -207,8 +207,8 @@ def clear(obj):
         if curve:
             keys.animation_data.action.fcurves.remove(curve)
         obj.shape_key_remove(key)
-    if baked and len(keys.key_blocks) == 1:
-        obj.shape_key_remove(keys.key_blocks[0])  # the basis
+    if baked and len(keys.key_blocks) == 1 and NAME in keys:
+        obj.shape_key_remove(keys.key_blocks[0])  # the basis, which was made for them
     if NAME in obj.modifiers:
         obj.modifiers.remove(obj.modifiers[NAME])
 
@@ -217,6 +217,7 @@ def add_key(obj, frame, points):
     """A shape key that is seen at this frame, and fades towards its neighbours."""
     if not obj.data.shape_keys:
         obj.shape_key_add(name="Basis", from_mix=False)
+        obj.data.shape_keys[NAME] = True
     key = obj.shape_key_add(name=f"{NAME} {frame}", from_mix=False)
     key.data.foreach_set("co", points.ravel())
     keys = obj.data.shape_keys
@@ -244,13 +245,8 @@ def cache_path(obj):
 def bake_cache(obj, scene, steps):
     path = cache_path(obj)
     where = os.path.abspath(bpy.path.abspath(path))
-    draft = where + ".tmp"
-    try:
-        sb.export.write_pc2(draft, (points for _, points in steps), overwrite=True)
-        os.replace(draft, where)
-    finally:
-        if os.path.exists(draft):
-            os.remove(draft)
+    sb.export.write_pc2(where, (points for _, points in steps), overwrite=True)
+    clear(obj)
     modifier = obj.modifiers.new(NAME, "MESH_CACHE")
     modifier.cache_format, modifier.filepath, modifier.frame_start = "PC2", path, scene.frame_start
     modifier.forward_axis, modifier.up_axis = "POS_Y", "POS_Z"
@@ -259,14 +255,16 @@ def bake_cache(obj, scene, steps):
 
 
 def bake_keys(obj, _, steps):
-    for frame, points in list(steps):  # the mesh stays as it is while it is simulated
+    baked = list(steps)
+    clear(obj)
+    for frame, points in baked:
         add_key(obj, frame, points)
 
 
 def bake(obj, scene, progress=lambda frame: None):
-    """Simulates the mesh over the scene's frames, and keeps what comes of it in place of what was baked before."""
+    """Simulates the mesh over the scene's frames, and keeps what comes of it in place of what was baked before, which
+    stays where it cannot be done."""
     current = scene.frame_current
-    clear(obj)
     try:
         scene.frame_set(scene.frame_start)
         simulation = Simulation(obj, scene)

@@ -138,6 +138,22 @@ class AddOn(unittest.TestCase):
         bpy.ops.object.shapebench_clear()
         self.assertEqual(len(obj.modifiers), 0)
 
+    def test_what_was_there_before_stays(self):
+        """An earlier bake where a new one fails, and the user's own basis and keys."""
+        obj = self.beam()
+        obj.shape_key_add(name="Mine", from_mix=False)
+        for target in ("KEYS", "CACHE"):
+            obj.shapebench.target, obj.shapebench.path = target, os.path.join(FOLDER, "stays.pc2")
+            bpy.ops.object.shapebench_bake()
+            wanted = self.seen(obj, FRAMES)
+            obj.shapebench.pins = "nothing"
+            with self.assertRaises(RuntimeError):
+                bpy.ops.object.shapebench_bake()
+            np.testing.assert_array_equal(self.seen(obj, FRAMES), wanted)
+            obj.shapebench.pins = "pins"
+        bpy.ops.object.shapebench_clear()
+        self.assertEqual([key.name for key in obj.data.shape_keys.key_blocks], ["Mine"])
+
     def test_pins_follow_an_object(self):
         obj = self.beam()
         bpy.ops.object.empty_add(location=(3, 1, 2))
