@@ -9,7 +9,9 @@ import struct
 import subprocess
 import sys
 import tempfile
+import threading
 import unittest
+import unittest.mock
 
 HERE = pathlib.Path(__file__).resolve().parent
 if not all(importlib.util.find_spec(name) for name in ("numpy", "h5py")):
@@ -120,9 +122,46 @@ class Results(unittest.TestCase):
             with self.assertRaisesRegex(InputError, text) as caught:
                 results.read(self.at(name))
             self.assertIn(name, str(caught.exception))
-        for name, text in (("rows.h5", "not a trajectory"), ("nothing", "no such file")):
-            with self.assertRaisesRegex(InputError, text):
+        self.at("short.vtkhdf").write_bytes(self.at("still.vtkhdf").read_bytes()[:-64])
+        self.at("bare.vtkhdf").write_bytes(self.at("still.vtkhdf").read_bytes()[:-64])
+        with h5py.File(self.at("bare.vtkhdf"), "r+") as file:
+            del file.attrs["checksum"], file["VTKHDF/Steps"]
+        for name, text in (("rows.h5", "not a trajectory"), ("nothing", "no such file"),
+                           ("short.vtkhdf", "its checksum is missing"), ("bare.vtkhdf", "missing or damaged")):
+            with self.assertRaisesRegex(InputError, f"{name}: .*{text}"):
                 results.Trajectory(self.at(name))
+
+    def test_what_is_lost_while_it_is_open_is_not_called_unwritable(self):
+        self.at("lost.vtkhdf").write_bytes(self.at("still.vtkhdf").read_bytes())
+        with results.Trajectory(self.at("lost.vtkhdf")) as motion:
+            os.truncate(self.at("lost.vtkhdf"), 2048)
+            with self.assertRaisesRegex(InputError, "lost.vtkhdf: cannot be read"):
+                motion.points(3)
+            with self.assertRaises(KeyError):
+                motion.field("weight", 3)
+            with self.assertRaises(IndexError):
+                motion.points(4)
+
+    def test_a_child_that_reads_has_h5pys_lock(self):
+        """Were another thread to hold it when the child is forked, the child would wait forever."""
+        others, lock, fork = [], h5py._objects.phil, os.fork
+
+        def take():
+            others.append(lock.acquire(False))
+            if others[-1]:
+                lock.release()
+
+        def forked():
+            thread = threading.Thread(target=take)
+            thread.start()
+            thread.join()
+            return fork()
+
+        self.at("again.h5").write_bytes(self.at("rows.h5").read_bytes())
+        with unittest.mock.patch.object(os, "fork", forked):
+            results.read(self.at("again.h5"))
+        take()
+        self.assertEqual(others, [False, True])
 
     def test_trajectories(self):
         with results.Trajectory(self.at("still.vtkhdf")) as motion, h5py.File(self.at("still.vtkhdf")) as file:
@@ -177,6 +216,26 @@ class Results(unittest.TestCase):
         self.assertTrue(self.at("still.obj").is_file())
         with self.assertRaises(UsageError):
             export.write_pc2(self.at("empty.pc2"), [])
+        self.assertFalse(self.at("empty.pc2").exists())
+
+    def test_a_file_is_written_whole_or_stays(self):
+        place = self.folder / "whole"
+        place.mkdir()
+        (place / "there.pc2").write_bytes(b"old")
+        (place / "link.pc2").symlink_to("there.pc2")
+        for name in ("there.pc2", "link.pc2", "new.pc2"):
+            with self.assertRaises(InputError):
+                export.write_pc2(place / name, [np.zeros((3, 3)), np.zeros((2, 3))], overwrite=True)
+        with self.assertRaises(FileExistsError):
+            export.write_pc2(place / "link.pc2", [np.zeros((3, 3))])
+        with self.assertRaisesRegex(OSError, "no file"):
+            export.write_pc2(place, [np.zeros((3, 3))], overwrite=True)
+        self.assertEqual((place / "there.pc2").read_bytes(), b"old")
+        self.assertEqual(export.write_pc2(place / "link.pc2", [np.zeros((3, 3))], overwrite=True), 1)
+        self.assertEqual(len((place / "there.pc2").read_bytes()), 32 + 36)
+        self.assertEqual({path.name for path in place.iterdir()}, {"there.pc2", "link.pc2"})
+        refused = self.exported("still.vtkhdf", "nowhere/motion.pc2")
+        self.assertEqual((refused.returncode, "cannot be written" in refused.stderr), (4, True), refused.stderr)
 
 
 if __name__ == "__main__":

@@ -8,11 +8,13 @@ others read.
 from __future__ import annotations
 
 import argparse
+import contextlib
+import errno
 import os
 import struct
 import sys
 from pathlib import Path
-from typing import Iterable, List, Union
+from typing import IO, Iterable, Iterator, List, Union
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,11 +25,29 @@ from .results import Trajectory
 Place = Union[str, "os.PathLike[str]"]
 
 
+@contextlib.contextmanager
+def _whole(path: Place, overwrite: bool) -> Iterator[IO[bytes]]:
+    """A file to write, for `with`, that appears whole or not at all. A link stays one."""
+    target = os.path.realpath(path)
+    if os.path.exists(target) and not os.path.isfile(target):
+        raise OSError(errno.EINVAL, "it is no file", os.fspath(path))
+    if os.path.exists(target) and not overwrite:
+        raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), os.fspath(path))
+    try:
+        with open(target + ".tmp", "wb") as file:
+            yield file
+        os.replace(target + ".tmp", target)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            os.remove(target + ".tmp")
+        raise
+
+
 def write_obj(path: Place, points: ArrayLike, triangles: ArrayLike, *, overwrite: bool = False) -> None:
     """Points [n, 3] with all their digits, and triangles [m, 3] that number them from 0."""
     x = np.asarray(points)
     form = "v %.9g %.9g %.9g" if x.dtype == np.float32 else "v %.17g %.17g %.17g"
-    with open(path, "w" if overwrite else "x", encoding="ascii") as file:
+    with _whole(path, overwrite) as file:
         np.savetxt(file, x, form)
         np.savetxt(file, np.asarray(triangles) + 1, "f %d %d %d")
 
@@ -46,10 +66,9 @@ def write_obj_sequence(trajectory: Trajectory, folder: Place, name: str, *, over
 def write_pc2(path: Place, frames: Iterable[ArrayLike], *, start: float = 0, rate: float = 1,
               overwrite: bool = False) -> int:
     """Frames of equally many points [n, 3] as a point cache, float32: `start` is the first one's number, `rate` how many
-    numbers lie from one to the next. How many there were. The number is written last: a cache that was cut off is
-    empty."""
+    numbers lie from one to the next. How many there were."""
     count, points = 0, None
-    with open(path, "wb" if overwrite else "xb") as file:
+    with _whole(path, overwrite) as file:
         for frame in frames:
             x = np.ascontiguousarray(frame, "<f4")
             if points is None:

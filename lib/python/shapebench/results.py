@@ -7,6 +7,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 from dataclasses import dataclass
 from types import TracebackType
@@ -155,20 +156,21 @@ class Trajectory:
     is asked for is read. `file` is h5py's, for what else is in it."""
 
     def __init__(self, path: Path) -> None:
-        name, stored = os.fspath(path), _stored()
+        self.path, stored = os.fspath(path), _stored()
         try:
-            stored.check(name)
-            self.file = stored.h5py.File(name, "r")
-            if stored.plain(self.file.attrs.get("kind", "")) != "shapebench trajectory":
-                raise stored.Unusable(f"{name}: not a trajectory of shapebench's")
-            self._root = self.file["VTKHDF"]
-            steps = self._root["Steps"]
-            self.times: NDArray[np.float64] = steps["Values"][:]  # s, of all frames
-            self._topology, self._point = steps["PartOffsets"][:], steps["PointOffsets"][:]
-            self._points = self._root["NumberOfPoints"][:]
-            self._offset = steps["ConnectivityIdOffsets"][:].ravel()
-            self.fields: List[str] = list(self._root.get("PointData", ()))  # that `run --fields` has stored
-        except (stored.Unusable, *stored.DAMAGE) as error:
+            with contextlib.ExitStack() as stack:
+                self.file = stack.enter_context(stored.opened(self.path))
+                if stored.plain(self.file.attrs.get("kind", "")) != "shapebench trajectory":
+                    raise stored.Unusable(f"{self.path}: not a trajectory of shapebench's")
+                self._root = self.file["VTKHDF"]
+                steps = self._root["Steps"]
+                self.times: NDArray[np.float64] = steps["Values"][:]  # s, of all frames
+                self._topology, self._point = steps["PartOffsets"][:], steps["PointOffsets"][:]
+                self._points = self._root["NumberOfPoints"][:]
+                self._offset = steps["ConnectivityIdOffsets"][:].ravel()
+                self.fields: List[str] = list(self._root.get("PointData", ()))  # that `run --fields` has stored
+                self._opened = stack.pop_all()
+        except stored.Unusable as error:
             raise InputError(str(error)) from None
 
     def __enter__(self) -> "Trajectory":
@@ -179,24 +181,32 @@ class Trajectory:
         self.close()
 
     def close(self) -> None:
-        self.file.close()
+        self._opened.close()
 
     def __len__(self) -> int:
         """How many frames there are."""
         return len(self.times)
 
-    def _rows(self, values: Any, frame: int) -> NDArray[Any]:
-        first = int(self._point[frame])
-        found: NDArray[Any] = values[first:first + int(self._points[self._topology[frame]])]
+    def _read(self, name: str, first: int, count: int) -> NDArray[Any]:
+        """Rows of one of the file's datasets."""
+        try:
+            found: NDArray[Any] = self._root[name][first:first + count]
+        except _stored().DAMAGE as error:
+            raise InputError(f"{self.path}: cannot be read: {error}") from None
         return found
+
+    def _rows(self, name: str, frame: int) -> NDArray[Any]:
+        return self._read(name, int(self._point[frame]), int(self._points[self._topology[frame]]))
 
     def points(self, frame: int) -> NDArray[Any]:
         """[n, 3], as they are stored: float32, or float64 of a mesh that lies far from the origin."""
-        return self._rows(self._root["Points"], frame)
+        return self._rows("Points", frame)
 
     def field(self, name: str, frame: int) -> NDArray[np.float32]:
-        """[n] or [n, 3]: values at the points."""
-        return self._rows(self._root["PointData"][name], frame)
+        """[n] or [n, 3]: values at the points. KeyError unless `name` is one of `fields`."""
+        if name not in self.fields:
+            raise KeyError(name)
+        return self._rows(f"PointData/{name}", frame)
 
     def topology(self, frame: int) -> int:
         """The number of the frame's topology, which changes where a body is cut or refined."""
@@ -204,8 +214,7 @@ class Trajectory:
 
     def triangles(self, frame: int = 0) -> NDArray[np.int64]:
         """[m, 3]; none of points that were given without."""
-        count = int(self._root["NumberOfConnectivityIds"][self.topology(frame)])
-        first = int(self._offset[frame])
-        cells = int(self._root["NumberOfCells"][self.topology(frame)])
-        corners: NDArray[np.int64] = self._root["Connectivity"][first:first + count]
+        topology = self.topology(frame)
+        count, cells = (int(self._read(name, topology, 1)[0]) for name in ("NumberOfConnectivityIds", "NumberOfCells"))
+        corners = self._read("Connectivity", int(self._offset[frame]), count)
         return corners.reshape(-1, 3) if count == 3 * cells else np.empty((0, 3), np.int64)

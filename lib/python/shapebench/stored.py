@@ -88,9 +88,12 @@ def try_to_read(path, size):
 
 
 def why_unreadable(path):
-    """Damage can crash the HDF5 library, or have it take any memory or time: a child tries first."""
+    """Damage can crash the HDF5 library, or have it take any memory or time: a child tries first. It is forked, because
+    another interpreter takes 0.2 s to import h5py, and there may be none (in a program that has Python within). Of
+    what threads share it needs h5py's lock alone, which this one holds so that it is free there."""
     ends = os.pipe()
-    child = os.fork()
+    with h5py._objects.phil:
+        child = os.fork()
     if not child:
         try:
             for number in signal.valid_signals():
