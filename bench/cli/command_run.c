@@ -372,6 +372,23 @@ static SmCode run_frames(BenchPlayback *play, BenchRecording *recording, const O
     return code;
 }
 
+/* Is there a mode of this number that deforms the body? Of one in pieces each piece is free to
+ * move: such modes have a frequency of 0, to rounding. */
+static SmCode check_mode(SmEngine *engine, int mode, SmError *error)
+{
+    const RefModes *modes = &ref_meshless_elastic(engine)->modes;
+    int shapes = ref_meshless_shapes(engine);
+    if (mode > shapes)
+        return sm_fail(error, SM_USAGE,
+                       "--mode %d: %d modes were found that deform the body: --modes %d finds more",
+                       mode, shapes, mode + 6);
+    const double *lambda = modes->lambda + modes->count - shapes;
+    if (lambda[mode - 1] > 1e-12 * lambda[shapes - 1]) return SM_OK;
+    return sm_fail(
+        error, SM_USAGE,
+        "--mode %d: it deforms nothing, because the body is in pieces: take a higher one", mode);
+}
+
 /* One period of a natural mode, whose largest displacement is a tenth of the body's longest extent.
  */
 static SmCode show_mode(BenchPlayback *play, BenchRecording *recording, const Options *options,
@@ -380,21 +397,17 @@ static SmCode show_mode(BenchPlayback *play, BenchRecording *recording, const Op
     const BenchBody *body = play->body;
     const BenchScene *scene = play->scene;
     SmEngine *engine = play->group[0].runner.engine;
-    int modes = ref_meshless_shapes(engine);
     double longest = 0, hertz = 0;
-    if (options->mode > modes)
-        return sm_fail(error, SM_USAGE,
-                       "--mode %d: %d modes were found that deform the body: --modes %d finds more",
-                       options->mode, modes, options->mode + 6);
+    SmCode code = check_mode(engine, options->mode, error);
     for (int d = 0; d < 3; d++) longest = fmax(longest, body->high[d] - body->low[d]);
-    SmCode code = SM_OK;
     for (int f = 0; f <= scene->frames && !code; f++) {
         double share = scene->frames ? (double)f / scene->frames : 0.25;
         hertz = ref_meshless_show(engine, options->mode - 1, 0.1 * longest * sin(2 * M_PI * share));
         play->time = share / hertz;
         if (recording) code = bench_recording_frame(recording, error);
     }
-    if (!code) printf("mode %d of %d: %.6g Hz\n", options->mode, modes, hertz);
+    if (!code)
+        printf("mode %d of %d: %.6g Hz\n", options->mode, ref_meshless_shapes(engine), hertz);
     return code;
 }
 

@@ -6,6 +6,7 @@
 
 #include <jansson.h>
 
+#include "../../lib/printable.h"
 #include "../../lib/test_frame.h"
 #include "test_program.h"
 
@@ -16,6 +17,8 @@ static bool there(const char *name)
 
 static int set_up(void **state)
 {
+    static const int face[6][4] = {{1, 3, 4, 2}, {5, 6, 8, 7}, {1, 2, 6, 5},
+                                   {3, 7, 8, 4}, {1, 5, 7, 3}, {2, 4, 8, 6}};
     if (make_folder(state)) return -1;
     write_text("bad.cfg", "mesh = \"shape:block\";\nparticles = 64;\ndamping_k = 1;\n");
     write_text("tiny.cfg",
@@ -38,6 +41,15 @@ static int set_up(void **state)
         "far.cfg",
         "mesh = \"shape:block\"; particles = 64; engine = \"octree\";\n"
         "octree = { widths = ( { centre = [9.0, 0.0, 0.0]; radius = 1.0; w = 1.0; } ); };\n");
+    char two[2048] = "";
+    for (int box = 0; box < 2; box++) {
+        for (int v = 0; v < 8; v++)
+            sm_append(two, sizeof two, "v %d %d %d\n", 3 * box + v % 2, v / 2 % 2, v / 4);
+        for (int f = 0; f < 6; f++)
+            sm_append(two, sizeof two, "f %d %d %d %d\n", 8 * box + face[f][0],
+                      8 * box + face[f][1], 8 * box + face[f][2], 8 * box + face[f][3]);
+    }
+    write_text("two.obj", two);
     write_text("wide.cfg", "mesh = \"shape:block\"; particles = 10648; w = 31;\n");
     write_text("tree.cfg",
                "paper = \"octree\"; row = \"hand-sampled\"; mesh = \"shape:block\"; cells = 343;\n"
@@ -148,6 +160,8 @@ TEST(files_that_cannot_be_used_are_named)
         {"run tiny.cfg --mode 1", 2, "--mode is of a meshless body, and brute has no natural"},
         {"run beam-elastic --nodes 60 --modes 9 --mode 4 --no-output", 2,
          "3 modes were found that deform the body: --modes 10 finds more"},
+        {"run two.obj --engine meshless --nodes 200 --points 1000 --modes 20 --mode 2 --no-output",
+         2, "--mode 2: it deforms nothing, because the body is in pieces"},
         {"run beam-elastic --basis cubic", 2, "'cubic' is not one of linear, quadratic"},
         {"run beam-elastic --w 2", 2, "--w: a meshless body has no regions"},
         {"run lattice.cfg --w 32", 2, "--w: '32' is not a whole number from 1 to 31"},
