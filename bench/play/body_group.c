@@ -12,7 +12,7 @@
 static double strain_limit(const BenchRunner *runner)
 {
     double limit = runner->scene->params.strain_limit;
-    return runner->type->cut && !runner->type->refines && isfinite(limit) ? limit : 0;
+    return runner->type->links && runner->type->pieces && isfinite(limit) ? limit : 0;
 }
 
 bool bench_group_changes(const BenchGroup *group)

@@ -38,8 +38,8 @@ static SmCode change_drawn(BenchGroup *group, double from, double to, SmError *e
 {
     double start = sm_now();
     (void)from, (void)to, (void)error;
-    sm_skin_draw(&group->skin);
-    group->last.follow_seconds = sm_now() - start;
+    if (sm_skin_draw(&group->skin))
+        group->last = (BenchChanged){.resampled = true, .follow_seconds = sm_now() - start};
     return SM_OK;
 }
 

@@ -274,7 +274,7 @@ const BenchSetting bench_scene_settings[] = {
     {"strain_limit", BENCH_IN(BenchScene, params.strain_limit), 0, 1e6,
      RUN("strain-limit", "S",
          "Links break beyond this times their length, above 1; 0: never. The surface comes apart "
-         "with them")},
+         "with them, except of the engine brute")},
     {"summation", BENCH_IN(BenchScene, params.summation), BENCH_CHOICES(bench_summations),
      RUN("summation", "HOW", "Sums over regions: %s")},
     {"polar", BENCH_IN(BenchScene, params.polar), BENCH_CHOICES(bench_polars),
