@@ -238,6 +238,13 @@ int sm_compare_ints(const void *a, const void *b)
     return (p > q) - (p < q);
 }
 
+int sm_compare_pairs(const void *a, const void *b)
+{
+    const int *p = a, *q = b;
+    int which = p[0] == q[0];
+    return (p[which] > q[which]) - (p[which] < q[which]);
+}
+
 enum { FEW = 192 };
 
 /* Every number goes to the place that those less than it, and equal ones before it, leave: no

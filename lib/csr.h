@@ -92,6 +92,9 @@ void sm_csr_parts_join(SmCsrParts *parts, SmCsr *csr, size_t size);
 /* Rising order of ints, for qsort(). */
 int sm_compare_ints(const void *a, const void *b);
 
+/* The same of pairs of ints, by the first, then by the second. */
+int sm_compare_pairs(const void *a, const void *b);
+
 /* Sorts whole numbers; quick where they are few or nearly in order. */
 void sm_sort_ints(int *item, long count);
 

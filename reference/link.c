@@ -15,13 +15,6 @@ typedef struct {
     long broken_count;
 } Lattice;
 
-static int compare_pairs(const void *a, const void *b)
-{
-    const int *p = a, *q = b;
-    if (p[0] != q[0]) return p[0] < q[0] ? -1 : 1;
-    return (p[1] > q[1]) - (p[1] < q[1]);
-}
-
 /* Canonical order: z, then y, then x. */
 static int compare_places(const void *a, const void *b)
 {
@@ -57,7 +50,7 @@ static bool is_broken(const Lattice *lattice, int p, int q)
 {
     int pair[2] = {p < q ? p : q, p < q ? q : p};
     return lattice->broken_count && bsearch(pair, lattice->broken, (size_t)lattice->broken_count,
-                                            sizeof pair, compare_pairs);
+                                            sizeof pair, sm_compare_pairs);
 }
 
 /* Writes the neighbours of p, rising, and returns how many. */
@@ -84,7 +77,7 @@ static int (*sort_pairs(const int (*broken)[2], long count))[2]
         sorted[b][0] = broken[b][!ordered];
         sorted[b][1] = broken[b][ordered];
     }
-    qsort(sorted, (size_t)count, sizeof *sorted, compare_pairs);
+    qsort(sorted, (size_t)count, sizeof *sorted, sm_compare_pairs);
     return sorted;
 }
 

@@ -26,33 +26,52 @@ static Ends find_ends(double aspect, int across)
     return ends;
 }
 
-static SmCode build(double aspect, double poisson, int across, RefBasis basis, const Ends *ends,
-                    RefBody *body, SmError *error)
-{
-    RefBrick brick = {{0, 0, 0}, {aspect, 1, 1}};
-    RefField field = ref_field_brick(&brick);
-    RefBodyOptions options = {.cell = 1.0 / across, .basis = basis, .material = {1, poisson, 1}};
-    return ref_body_build(&field, &options, ends->held + 1, ends->x, body, error);
-}
+/* A beam, what holds its end, and where its tip's middle goes. */
+typedef struct {
+    RefBody body;
+    RefRows rows, tip;
+} Beam;
 
-static void clamp(const RefBody *body, const Ends *ends, RefRows *rows, RefRows *tip)
+static void clamp(Beam *beam, const Ends *ends)
 {
+    const RefBody *body = &beam->body;
     RefShape shape = ref_shape_create(&body->nodes);
     for (int n = 0; n < ends->held; n++) {
         ref_mls_at(&body->nodes, body->basis, ends->x[n], &shape);
-        for (int d = 0; d < 3; d++) ref_rows_displacement(rows, &shape, d);
+        for (int d = 0; d < 3; d++) ref_rows_displacement(&beam->rows, &shape, d);
     }
     ref_mls_at(&body->nodes, body->basis, ends->x[ends->held], &shape);
-    for (int d = 0; d < 3; d++) ref_rows_displacement(tip, &shape, d);
+    for (int d = 0; d < 3; d++) ref_rows_displacement(&beam->tip, &shape, d);
     ref_shape_free(&shape);
 }
 
+/* After an error nothing is to be freed. */
+static SmCode make_beam(double aspect, double poisson, int across, RefBasis basis, Beam *beam,
+                        SmError *error)
+{
+    Ends ends = find_ends(aspect, across);
+    RefBrick brick = {{0, 0, 0}, {aspect, 1, 1}};
+    RefField field = ref_field_brick(&brick);
+    RefBodyOptions options = {.cell = 1.0 / across, .basis = basis, .material = {1, poisson, 1}};
+    *beam = (Beam){0};
+    SmCode code = ref_body_build(&field, &options, ends.held + 1, ends.x, &beam->body, error);
+    if (!code) clamp(beam, &ends);
+    return code;
+}
+
+static void free_beam(Beam *beam)
+{
+    ref_rows_free(&beam->rows);
+    ref_rows_free(&beam->tip);
+    ref_body_free(&beam->body);
+}
+
 /* Under an acceleration along y: the mass matrix times 1, since shape functions add up to 1. */
-static SmCode find_sag(const RefBody *body, const RefRows *rows, const RefRows *tip, double *sag,
-                       SmError *error)
+static SmCode find_sag(const Beam *beam, double *sag, SmError *error)
 {
     RefSolver *solver;
-    SmCode code = ref_solver_create(&body->matrices, 0, rows, &solver, error);
+    const RefBody *body = &beam->body;
+    SmCode code = ref_solver_create(&body->matrices, 0, &beam->rows, &solver, error);
     if (code) return code;
     size_t nodes = (size_t)body->nodes.count;
     double *one = sm_alloc(nodes, sizeof *one), *weight = sm_alloc(nodes, sizeof *weight);
@@ -61,7 +80,7 @@ static SmCode find_sag(const RefBody *body, const RefRows *rows, const RefRows *
     ref_sparse_apply(&body->matrices.mass, 1, one, weight);
     for (size_t n = 0; n < nodes; n++) load[3 * n + 1] = weight[n];
     ref_solver_solve(solver, load, NULL, u);
-    *sag = ref_rows_apply(tip, 1, u);
+    *sag = ref_rows_apply(&beam->tip, 1, u);
     ref_solver_destroy(solver);
     free(one);
     free(weight);
@@ -72,18 +91,18 @@ static SmCode find_sag(const RefBody *body, const RefRows *rows, const RefRows *
 
 /* Bending modes come in pairs, along y and z; those that leave the tip's middle where it is twist
  * or stretch the beam. */
-static SmCode find_frequencies(const RefBody *body, const RefRows *rows, const RefRows *tip,
-                               double mass, double square[REF_BEAM_MODES], SmError *error)
+static SmCode find_frequencies(const Beam *beam, double mass, double square[REF_BEAM_MODES],
+                               SmError *error)
 {
     RefModes modes;
-    SmCode code = ref_modes_find(&body->matrices, rows, MODES, &modes, error);
+    SmCode code = ref_modes_find(&beam->body.matrices, &beam->rows, MODES, &modes, error);
     if (code) return code;
     size_t size = 3 * (size_t)modes.nodes;
     double *u = sm_alloc(size, sizeof *u);
     int bending = 0;
     for (int k = 0; k < modes.count; k++) {
         for (size_t i = 0; i < size; i++) u[i] = modes.shape[i * (size_t)modes.count + (size_t)k];
-        double side = hypot(ref_rows_apply(tip, 1, u), ref_rows_apply(tip, 2, u));
+        double side = hypot(ref_rows_apply(&beam->tip, 1, u), ref_rows_apply(&beam->tip, 2, u));
         if (side * sqrt(mass) < 1) continue; /* 2 of a mode that bends */
         if (bending % 2 == 0 && bending / 2 < REF_BEAM_MODES) square[bending / 2] = modes.lambda[k];
         bending++;
@@ -98,35 +117,25 @@ static SmCode find_frequencies(const RefBody *body, const RefRows *rows, const R
 static SmCode find_meshless(double aspect, double poisson, BenchElasticCantilever *cantilever,
                             SmError *error)
 {
-    Ends ends = find_ends(aspect, ACROSS);
-    RefBody body;
-    SmCode code = build(aspect, poisson, ACROSS, REF_MLS_LINEAR, &ends, &body, error);
+    Beam beam;
+    SmCode code = make_beam(aspect, poisson, ACROSS, REF_MLS_LINEAR, &beam, error);
     if (code) return code;
-    RefRows rows = {0}, tip = {0};
-    clamp(&body, &ends, &rows, &tip);
-    code = find_sag(&body, &rows, &tip, &cantilever->sag, error);
-    if (!code) code = find_frequencies(&body, &rows, &tip, aspect, cantilever->square, error);
+    code = find_sag(&beam, &cantilever->sag, error);
+    if (!code) code = find_frequencies(&beam, aspect, cantilever->square, error);
     cantilever->there = !code;
-    ref_rows_free(&rows);
-    ref_rows_free(&tip);
-    ref_body_free(&body);
+    free_beam(&beam);
     return code;
 }
 
 SmCode bench_elastic_sag(double aspect, double poisson, int across, RefBasis basis, long *nodes,
                          double *sag, SmError *error)
 {
-    RefBody body;
-    RefRows rows = {0}, tip = {0};
-    Ends ends = find_ends(aspect, across);
-    SmCode code = build(aspect, poisson, across, basis, &ends, &body, error);
+    Beam beam;
+    SmCode code = make_beam(aspect, poisson, across, basis, &beam, error);
     if (code) return code;
-    *nodes = body.nodes.count;
-    clamp(&body, &ends, &rows, &tip);
-    code = find_sag(&body, &rows, &tip, sag, error);
-    ref_rows_free(&rows);
-    ref_rows_free(&tip);
-    ref_body_free(&body);
+    *nodes = beam.body.nodes.count;
+    code = find_sag(&beam, sag, error);
+    free_beam(&beam);
     return code;
 }
 

@@ -38,8 +38,6 @@ typedef struct {
     unsigned looked;                    /* bits: at which of them was looked */
 } BenchElasticFound;
 
-enum { BENCH_SHELL_CHECKS = 9 }; /* of these at which shells are looked at (shell_check.h) */
-
 /* Notes a finding if it is larger than the one there; what is not finite is NaN, and stays. */
 void bench_elastic_note(BenchElasticFound *found, BenchElasticCheck check, double value);
 

@@ -4,19 +4,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../lib/csr.h"
 #include "../../lib/vector.h"
 #include "../../reference/link.h"
 
-static int compare(const void *a, const void *b)
-{
-    const int *x = a, *y = b;
-    int which = x[0] == y[0];
-    return (x[which] > y[which]) - (x[which] < y[which]);
-}
-
 static bool has(int (*sorted)[2], long count, const int pair[2])
 {
-    return count > 0 && bsearch(pair, sorted, (size_t)count, sizeof *sorted, compare);
+    return count > 0 && bsearch(pair, sorted, (size_t)count, sizeof *sorted, sm_compare_pairs);
 }
 
 /* Neighbours at rest of which `is_parted` says so. */
@@ -59,7 +53,7 @@ int (*bench_parted(const BenchBody *body, const SmEngineType *type, SmEngine *en
     Links left = {.count = type->links(engine, NULL, 0)};
     left.link = sm_alloc((size_t)left.count, sizeof *left.link);
     type->links(engine, left.link, left.count);
-    qsort(left.link, (size_t)left.count, sizeof *left.link, compare);
+    qsort(left.link, (size_t)left.count, sizeof *left.link, sm_compare_pairs);
     int(*pair)[2] = pairs_that(body, is_broken, &left, count);
     free(left.link);
     return pair;

@@ -95,12 +95,6 @@ static int leaf_at(const OctStructure *body, const int cell[3])
     return body->tree.leaf[oct_tree_find(&body->tree, cell[0], cell[1], cell[2])];
 }
 
-static int compare(const void *a, const void *b)
-{
-    int x = *(const int *)a, y = *(const int *)b;
-    return (x > y) - (x < y);
-}
-
 static bool regular_graph(const OctStructure *body, char *reason)
 {
     for (long i = 0; i < body->tree.leaves; i++) {
@@ -111,7 +105,7 @@ static bool regular_graph(const OctStructure *body, char *reason)
             int leaf = n == 13 ? -1 : leaf_at(body, cell);
             if (leaf >= 0) near[count++] = leaf;
         }
-        qsort(near, (size_t)count, sizeof *near, compare);
+        qsort(near, (size_t)count, sizeof *near, sm_compare_ints);
         long first = body->graph.edges.first[i];
         if (body->graph.edges.end[i] - first != count)
             return fail(reason, "edges are too few or too many", i, i);

@@ -57,13 +57,12 @@ static SmCode perform(void *record, int argc, char **argv, SmError *error)
     char script[PATH_MAX], program[PATH_MAX];
     SmCode code = bench_script_find("report/main.py", script, error);
     if (code) return code;
-    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
-    program[length < 0 ? 0 : length] = '\0';
-    const char *const start[] = {PYTHON,    script,         "--output",  options->output,
-                                 "--title", options->title, "--program", program};
+    const char *const start[] = {PYTHON,          script,    "--output",
+                                 options->output, "--title", options->title};
     const char **word = sm_alloc((size_t)(FIXED + common->words + 1), sizeof *word);
     memcpy(word, start, sizeof start);
     int words = sizeof start / sizeof *start;
+    if (bench_program_path(program)) word[words++] = "--program", word[words++] = program;
     if (common->quiet) word[words++] = "--quiet";
     if (options->overwrite) word[words++] = "--overwrite";
     if (options->no_page) word[words++] = "--no-page";

@@ -12,6 +12,7 @@
 #include "../scene/override.h"
 #include "../store/draft.h"
 #include "../table/quantity.h"
+#include "../table/row_grid.h"
 #include "../table/row_store.h"
 #include "../table/row_table.h"
 #include "command.h"
@@ -209,27 +210,23 @@ static void name_set(const Options *options, const Choice *choice, BenchScene *s
         sm_append(scene->name, sizeof scene->name, "-%s", choice->isa);
 }
 
-/* Where its rows come: those of steps, of meshless bodies, of shells. */
-static int place_of(const BenchScene *scene)
-{
-    unsigned own = bench_engine(scene->engine)->own;
-    return own & BENCH_OF_SHELL ? 2 : own & BENCH_OF_ELASTIC ? 1 : 0;
-}
-
-/* Names the rows (row_report.h), the meshless ones last; fails where a scene is not there. */
+/* Names the rows (row_report.h), table after table; fails where a scene is not there. */
 static SmCode plan_rows(Choices *chosen, BenchRow *rows, SmError *error)
 {
     Choice *ordered = sm_alloc((size_t)chosen->count, sizeof *ordered);
     int planned = 0;
     SmCode code = SM_OK;
-    for (int place = 0; place < 3; place++)
+    for (int table = BENCH_TABLE_LATTICES; table <= BENCH_TABLE_SHELLS; table++)
         for (int i = 0; i < chosen->count && !code; i++) {
             BenchScene scene;
+            BenchRow row = {0};
             code = find_scene(chosen->options, &chosen->scene[i], &scene, error);
-            if (code || place_of(&scene) != place) continue;
+            if (code) break;
             name_set(chosen->options, &chosen->scene[i], &scene);
-            bench_row_name(&scene, &rows[planned]);
-            ordered[planned++] = chosen->scene[i];
+            bench_row_name(&scene, &row);
+            if ((int)bench_row_table(&row) != table) continue;
+            ordered[planned] = chosen->scene[i];
+            rows[planned++] = row;
         }
     free(chosen->scene);
     chosen->scene = ordered;

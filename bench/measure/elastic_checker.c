@@ -25,7 +25,6 @@ void bench_elastic_row_fill(const BenchRunner *runner, BenchRow *row)
 
 SmCode bench_elastic_takes(const BenchScene *scene, SmError *error)
 {
-    bool deformed = scene->bend != 0 || scene->twist != 0 || scene->squash != 0 || scene->kick != 0;
     const struct {
         bool there;
         const char *what;
@@ -36,7 +35,7 @@ SmCode bench_elastic_takes(const BenchScene *scene, SmError *error)
         {scene->touch_count > 0 || scene->view.level > 0, "'touches' or a 'view'"},
         {scene->params.collide.self || scene->params.collide.bodies, "'collide'"},
         {scene->instances > 1, "several instances"},
-        {deformed, "'bend', 'twist', 'squash' or 'kick'"},
+        {bench_scene_disturbs(scene), "'bend', 'twist', 'squash' or 'kick'"},
     };
     for (size_t i = 0; i < sizeof beyond / sizeof *beyond; i++)
         if (beyond[i].there)

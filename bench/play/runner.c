@@ -264,7 +264,6 @@ static bool is_pushed(const BenchEngine *engine)
 /* Refuses what the engine does not do, and names those that do. */
 static SmCode check_engine(const BenchScene *scene, const SmEngineType *type, SmError *error)
 {
-    bool deformed = scene->bend != 0 || scene->twist != 0 || scene->squash != 0 || scene->kick != 0;
     const struct {
         bool wanted, (*does)(const BenchEngine *engine);
         const char *what;
@@ -272,7 +271,7 @@ static SmCode check_engine(const BenchScene *scene, const SmEngineType *type, Sm
         {scene->octree.creep > 0, flows, "plastic bodies ('creep')"},
         {scene->touch_count > 0 || scene->view.level > 0, refines, "'touches' and 'view'"},
         {scene->cut_count > 0, cuts, "'cuts'"},
-        {deformed, is_set, "'bend', 'twist', 'squash' and 'kick'"},
+        {bench_scene_disturbs(scene), is_set, "'bend', 'twist', 'squash' and 'kick'"},
         {scene->handle_count > 0, is_held, "'handles'"},
         {scene->force_count > 0, is_pushed, "'forces'"},
         {scene->obstacle_count > 0, stops, "planes, spheres, boxes and capsules"},

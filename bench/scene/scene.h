@@ -98,6 +98,12 @@ typedef struct BenchScene {
     double kick;                /* random initial velocity, cells per step, from the seed */
 } BenchScene;
 
+/* Does it begin otherwise than at rest? */
+static inline bool bench_scene_disturbs(const BenchScene *scene)
+{
+    return scene->bend != 0 || scene->twist != 0 || scene->squash != 0 || scene->kick != 0;
+}
+
 /* Words for choices, in the order of their enumerations; NULL-terminated. */
 extern const char *const bench_precisions[];
 extern const char *const bench_widths[]; /* units of an octree's w: of each node's own, finest */

@@ -136,10 +136,16 @@ bool bench_process_last_line(const char *path, const char *words, size_t size, c
     return line[0];
 }
 
-void bench_program_folder(char path[PATH_MAX])
+bool bench_program_path(char path[PATH_MAX])
 {
     ssize_t length = readlink("/proc/self/exe", path, PATH_MAX - 64);
     path[length > 0 ? length : 0] = '\0';
+    return length > 0;
+}
+
+void bench_program_folder(char path[PATH_MAX])
+{
+    bench_program_path(path);
     char *name = strrchr(path, '/');
     if (name) *name = '\0';
 }

@@ -37,6 +37,9 @@ SmCode bench_process_run(const BenchProcess *process, BenchProcessEnd *end, SmEr
  * blank; cut to `size`. Returns whether there is one; `line` is empty if not. */
 bool bench_process_last_line(const char *path, const char *words, size_t size, char *line);
 
+/* The running program; false, and "": it is not known. Leaves room as the next does. */
+bool bench_program_path(char path[PATH_MAX]);
+
 /* The folder that the running program is in, which leaves room for a name behind it. */
 void bench_program_folder(char path[PATH_MAX]);
 

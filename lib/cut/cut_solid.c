@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../csr.h"
 #include "../mesh/edge.h"
 #include "../system/hash.h"
 #include "../vector.h"
@@ -139,17 +140,12 @@ static void add_to_fans(Sheet *s, long t)
     }
 }
 
-static int compare(const void *a, const void *b)
-{
-    return *(const int *)a - *(const int *)b;
-}
-
 /* Do two fans share a vertex? Pushed out, they would cross. */
 static bool fans_touch(const Sheet *s)
 {
     int *vertex = sm_alloc((size_t)s->fans, sizeof *vertex);
     for (long f = 0; f < s->fans; f++) vertex[f] = s->at[f].vertex;
-    qsort(vertex, (size_t)s->fans, sizeof *vertex, compare);
+    sm_sort_ints(vertex, s->fans);
     bool touch = false;
     for (long f = 1; f < s->fans; f++) touch |= vertex[f] == vertex[f - 1];
     free(vertex);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "../box.h"
+#include "../csr.h"
 #include "../system/hash.h"
 
 static const double rounding_gap = 1e-7; /* of the box's longest side */
@@ -52,23 +53,16 @@ typedef struct {
     int (*pair)[2];
 } Buckets;
 
-static int compare_pairs(const void *left, const void *right)
-{
-    const int *a = left, *b = right;
-    int first = (a[0] > b[0]) - (a[0] < b[0]);
-    return first ? first : (a[1] > b[1]) - (a[1] < b[1]);
-}
-
 static void sort_pairs(int (*pair)[2], size_t count)
 {
     if (count > 24) {
-        qsort(pair, count, sizeof *pair, compare_pairs);
+        qsort(pair, count, sizeof *pair, sm_compare_pairs);
         return;
     }
     for (size_t i = 1; i < count; i++) {
         int moved[2] = {pair[i][0], pair[i][1]};
         size_t j = i;
-        for (; j > 0 && compare_pairs(pair[j - 1], moved) > 0; j--)
+        for (; j > 0 && sm_compare_pairs(pair[j - 1], moved) > 0; j--)
             memcpy(pair[j], pair[j - 1], sizeof moved);
         memcpy(pair[j], moved, sizeof moved);
     }
@@ -177,7 +171,7 @@ static long count_duplicates(const SmMesh *mesh)
     long duplicates = 0;
     for (long v = 0; v < mesh->vertex_count; v++)
         for (size_t i = buckets.start[v] + 1; i < buckets.start[v + 1]; i++)
-            duplicates += compare_pairs(buckets.pair[i - 1], buckets.pair[i]) == 0;
+            duplicates += sm_compare_pairs(buckets.pair[i - 1], buckets.pair[i]) == 0;
     free_buckets(&buckets);
     return duplicates;
 }

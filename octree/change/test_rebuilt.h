@@ -18,12 +18,6 @@ static inline int same_node(const OctTree *from, int node, const OctTree *to)
     return found;
 }
 
-static inline int compare_pairs(const void *a, const void *b)
-{
-    const int *p = a, *q = b;
-    return p[0] != q[0] ? (p[0] > q[0]) - (p[0] < q[0]) : (p[1] > q[1]) - (p[1] < q[1]);
-}
-
 static inline void check_edges(const OctStructure *s, long leaf, const OctStructure *want,
                                long twin)
 {
@@ -37,7 +31,7 @@ static inline void check_edges(const OctStructure *s, long leaf, const OctStruct
         edge[n][1] = oct_graph_length(&s->graph)[e];
         assert_true(edge[n][1] <= s->graph.longest);
     }
-    qsort(edge, (size_t)count, sizeof *edge, compare_pairs);
+    qsort(edge, (size_t)count, sizeof *edge, sm_compare_pairs);
     for (long n = 0; n < count; n++) {
         long e = want->graph.edges.first[twin] + n;
         assert_int_equal(edge[n][0], want->graph.edges.item[e]);
