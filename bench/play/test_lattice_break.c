@@ -153,7 +153,7 @@ TEST(shapes_are_shaken)
         snprintf(text, sizeof text,
                  "mesh = \"shape:%s\"; particles = %d; w = %d; h = 0.01; strain_limit = %.2f;\n"
                  "kick = %.2f; twist = %.2f; steps_per_frame = 2; layout = \"%s\";\n",
-                 names[n], 60 + random_int(&seed, 100), 1 + random_int(&seed, 3),
+                 names[n], 20 + random_int(&seed, 40), 1 + random_int(&seed, 3),
                  random_between(&seed, 1.15, 1.4), random_between(&seed, 0.5, 0.7),
                  random_between(&seed, 0, 1), n % 2 ? "lists" : "blocks");
         play(text, 6, 2);
