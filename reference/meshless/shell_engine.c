@@ -140,10 +140,10 @@ static void make_particles(const SmMesh *mesh, SmEngine *engine)
                   (const double(*)[2])body->map.theta, CONST(engine->rest), &body->skin,
                   &body->loose);
     for (long s = 0; s < engine->count; s++) engine->place[body->skin.order[s]] = s;
-    const RefSparse *M = &body->sheet.shell.matrices.mass;
-    for (int c = 0; c < M->columns; c++)
-        for (int e = M->start[c]; e < M->start[c + 1]; e++)
-            mass += (M->row[e] == c ? 1 : 2) * M->value[e];
+    double *masses = sm_alloc((size_t)body->sheet.warp.nodes, sizeof *masses);
+    ref_sparse_sums(&body->sheet.shell.matrices.mass, masses);
+    for (long n = 0; n < body->sheet.warp.nodes; n++) mass += masses[n];
+    free(masses);
     engine->mass = mass / (double)engine->count;
     if (body->breaking) {
         engine->triangle = sm_alloc((size_t)mesh->triangle_count, sizeof *engine->triangle);

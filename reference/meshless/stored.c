@@ -52,10 +52,7 @@ void ref_stored_of(const char *key, const RefElastic *elastic, RefStored *stored
     memcpy(stored->position, body->nodes.position, nodes * sizeof *stored->position);
     memcpy(stored->reach, body->nodes.reach, nodes * sizeof *stored->reach);
     memcpy(stored->lambda, motion->lambda, modes * sizeof *stored->lambda);
-    double *one = sm_alloc(nodes, sizeof *one);
-    for (size_t n = 0; n < nodes; n++) one[n] = 1;
-    ref_sparse_apply(&body->matrices.mass, 1, one, stored->mass);
-    free(one);
+    ref_sparse_sums(&body->matrices.mass, stored->mass);
     for (size_t k = 0; k < modes; k++)
         for (size_t n = 0; n < nodes; n++)
             for (size_t d = 0; d < 3; d++)

@@ -45,6 +45,14 @@ void ref_sparse_apply(const RefSparse *sparse, int width, const double *x, doubl
         }
 }
 
+void ref_sparse_sums(const RefSparse *sparse, double *sum)
+{
+    double *one = sm_alloc((size_t)sparse->columns, sizeof *one);
+    for (int c = 0; c < sparse->columns; c++) one[c] = 1;
+    ref_sparse_apply(sparse, 1, one, sum);
+    free(one);
+}
+
 /* The entry of a column in a row of the lower half; NULL: none. */
 static double *entry_at(const RefSparse *sparse, int column, int row)
 {

@@ -63,21 +63,27 @@ INLINE void weigh(int dims, const double s[3], double reach, double *w)
     w[5] = slope[0][0] * slope[1][0] / (reach * reach);
 }
 
+void ref_mls_multiply(const double f[6], double part[6])
+{
+    double g[MOST_PARTS];
+    memcpy(g, part, sizeof g);
+    part[0] = f[0] * g[0];
+    for (int k = 1; k < 3; k++) part[k] = f[0] * g[k] + f[k] * g[0];
+    for (int m = 0; m < 3; m++) {
+        int k = second_of[m][0], l = second_of[m][1];
+        part[3 + m] = f[0] * g[3 + m] + f[k] * g[l] + f[l] * g[k] + f[3 + m] * g[0];
+    }
+}
+
 /* Multiplies a weight in a plane by what cracks let through; false where that is nothing. */
 static bool cut(const RefNodes *nodes, int member, const double x[3], const double eye[3],
                 double *w)
 {
-    double f[MOST_PARTS], whole[MOST_PARTS];
+    double f[MOST_PARTS];
     if (!nodes->cut.pass(nodes->cut.cracks, eye, nodes->position[member], nodes->reach[member], f))
         return false;
     if (eye != x) memset(f + 1, 0, 5 * sizeof *f);
-    memcpy(whole, w, sizeof whole);
-    w[0] = f[0] * whole[0];
-    for (int k = 1; k < 3; k++) w[k] = f[0] * whole[k] + f[k] * whole[0];
-    for (int m = 0; m < 3; m++) {
-        int k = second_of[m][0], l = second_of[m][1];
-        w[3 + m] = f[0] * whole[3 + m] + f[k] * whole[l] + f[l] * whole[k] + f[3 + m] * whole[0];
-    }
+    ref_mls_multiply(f, w);
     return w[0] > 0;
 }
 

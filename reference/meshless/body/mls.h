@@ -46,6 +46,9 @@ bool ref_mls_seen_from(const RefNodes *nodes, RefBasis basis, const double x[3],
  * derivative. */
 double ref_mls_spline(double s, double slope[2]);
 
+/* part *= f, each a value, two slopes and the second derivatives 11, 22, 12 in a plane. */
+void ref_mls_multiply(const double f[6], double part[6]);
+
 /* Linear functions of the nodal parameters: what constraints bind (meshless section 5.3.3). MLS
  * shape functions are no Kronecker delta, so a displacement at a point is a sum over the nodes that
  * cover it. Parameter 3 I + d is node I's along axis d. */

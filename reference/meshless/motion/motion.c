@@ -76,11 +76,8 @@ static void fill_rows(const RefBody *body, const RefModes *modes, RefMotion *mot
 /* [nodes] the body's mass, shared out by the shape functions. */
 static double *node_masses(const RefBody *body)
 {
-    size_t nodes = (size_t)body->nodes.count;
-    double *one = sm_alloc(nodes, sizeof *one), *mass = sm_alloc(nodes, sizeof *mass);
-    for (size_t n = 0; n < nodes; n++) one[n] = 1;
-    ref_sparse_apply(&body->matrices.mass, 1, one, mass);
-    free(one);
+    double *mass = sm_alloc((size_t)body->nodes.count, sizeof *mass);
+    ref_sparse_sums(&body->matrices.mass, mass);
     return mass;
 }
 

@@ -53,6 +53,13 @@ static bool holds(const double low[2], const double high[2], const double theta[
 
 bool ref_chart_enter(const RefChart *chart, double theta[2])
 {
+    bool turned;
+    return ref_chart_go_on(chart, theta, &turned);
+}
+
+bool ref_chart_go_on(const RefChart *chart, double theta[2], bool *turned)
+{
+    *turned = false;
     if (holds(chart->low, chart->high, theta)) return true;
     for (int s = 0; s < chart->seams; s++) {
         const RefSeam *seam = chart->seam + s;
@@ -60,6 +67,7 @@ bool ref_chart_enter(const RefChart *chart, double theta[2])
         ref_seam_cross(seam, theta, there);
         if (!holds(seam->low, seam->high, there)) continue;
         memcpy(theta, there, sizeof there);
+        *turned = seam->turned;
         return true;
     }
     return false;

@@ -45,6 +45,9 @@ void ref_chart_fold(RefChart *chart, const double *lower, const double *upper);
 /* Moves a place that is beyond a seam into the rectangle; false where there is no seam. */
 bool ref_chart_enter(const RefChart *chart, double theta[2]);
 
+/* The same; `turned` receives whether the plane goes on turned there by half a turn. */
+bool ref_chart_go_on(const RefChart *chart, double theta[2], bool *turned);
+
 /* Of a place and its images beyond seams, the one that is nearest to `near`. */
 void ref_chart_image(const RefChart *chart, const double theta[2], const double near[2],
                      double image[2]);

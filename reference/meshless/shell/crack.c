@@ -247,20 +247,6 @@ static bool first_meeting(const RefCracks *cracks, const double tip[2], const do
     return any;
 }
 
-/* Moves a place into the rectangle; whether the way there is turned then is where another place
- * beside it goes. */
-static bool enter(const RefChart *chart, double theta[2], bool *turned)
-{
-    double from[2] = {theta[0], theta[1]};
-    if (!ref_chart_enter(chart, theta)) return false;
-    for (int s = 0; s < chart->seams; s++) {
-        double there[2];
-        ref_seam_cross(chart->seam + s, from, there);
-        if (there[0] == theta[0] && there[1] == theta[1]) *turned = chart->seam[s].turned;
-    }
-    return true;
-}
-
 void ref_cracks_grow(RefCracks *cracks, int arm, const double to[2])
 {
     double end[2][2], way[2], share = 1;
@@ -274,7 +260,7 @@ void ref_cracks_grow(RefCracks *cracks, int arm, const double to[2])
     lengthen(cracks, arm, length);
     add_pieces(cracks, arm, (const double(*)[2])end);
     memcpy(entered, end[1], sizeof entered);
-    if (!enter(cracks->chart, entered, &turned)) ends = true;
+    if (!ref_chart_go_on(cracks->chart, entered, &turned)) ends = true;
     RefCrackArm *of = cracks->arm + arm;
     memcpy(of->tip, entered, sizeof of->tip);
     for (int d = 0; d < 2; d++) of->way[d] = (turned ? -1 : 1) * way[d] / length_of(way);
@@ -323,19 +309,6 @@ static bool pass_piece(const RefCrackPiece *piece, double ahead, const double x[
     return true;
 }
 
-/* part *= f, with derivatives. */
-static void multiply(const double f[6], double part[6])
-{
-    double g[6];
-    memcpy(g, part, sizeof g);
-    part[0] = f[0] * g[0];
-    for (int k = 1; k < 3; k++) part[k] = f[0] * g[k] + f[k] * g[0];
-    for (int m = 0; m < 3; m++) {
-        int k = 1 + (m == 1), l = 1 + (m != 0);
-        part[3 + m] = f[0] * g[3 + m] + f[k] * g[l] + f[l] * g[k] + f[3 + m] * g[0];
-    }
-}
-
 static bool pass(const RefCracks *cracks, bool earlier, const double x[3], const double from[3],
                  double reach, double part[6])
 {
@@ -348,7 +321,7 @@ static bool pass(const RefCracks *cracks, bool earlier, const double x[3], const
         double f[6], ahead = earlier ? piece->before : piece->ahead;
         if ((earlier && piece->born == cracks->now) || !crosses(piece, x, from)) continue;
         if (!pass_piece(piece, ahead, x, from, SOFT * reach, f)) return false;
-        multiply(f, part);
+        ref_mls_multiply(f, part);
     }
     return true;
 }

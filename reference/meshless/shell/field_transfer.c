@@ -9,7 +9,7 @@ void ref_field_value(const RefFieldPlace *place, double value[3])
         for (int d = 0; d < 3; d++) value[d] += place->part[n][0] * place->u[place->node[n]][d];
 }
 
-static void strain_at(const RefFieldPlace *place, const RefFrame *frame, double strain[6])
+void ref_field_strains(const RefFieldPlace *place, const RefFrame *frame, double strain[6])
 {
     double B[6][3];
     memset(strain, 0, sizeof(double[6]));
@@ -50,8 +50,8 @@ void ref_field_residual(const RefFieldPlace *old, const RefFieldPlace *new, cons
     if (old->count == 0 || new->count == 0) return;
     ref_field_value(old, value[0]);
     ref_field_value(new, value[1]);
-    strain_at(old, frame, strain[0]);
-    strain_at(new, frame + 1, strain[1]);
+    ref_field_strains(old, frame, strain[0]);
+    ref_field_strains(new, frame + 1, strain[1]);
     bool was_stiff = ref_thin_is_stiff(frame, whole, sample->trace);
     double scale = frame[1].area / frame[0].area; /* strains count by the metric they are of */
     for (int i = 0; i < 6; i++)

@@ -24,6 +24,9 @@ typedef struct {
 /* The middle surface at a place. */
 RefFrame ref_field_frame(const RefFieldPlace *place);
 
+/* A field's strains at a place (thin.h), whose surface the frame is. */
+void ref_field_strains(const RefFieldPlace *place, const RefFrame *frame, double strain[6]);
+
 /* A field's value at a place. */
 void ref_field_value(const RefFieldPlace *place, double value[3]);
 

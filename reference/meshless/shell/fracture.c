@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "../../../lib/vector.h"
+#include "field_transfer.h"
 
 /* Samples of a cell in the middles of its quarters. */
 static const int quarter[4] = {7, 10, 25, 28};
@@ -38,18 +39,16 @@ static RefFaceStress stress_at(const RefCracked *cracked, const RefSamples *samp
                                const double (*u)[3])
 {
     const RefShellOptions *options = &cracked->options;
-    const int *node = samples->node + samples->start[p];
-    const double(*part)[6] = (const double(*)[6])(samples->part + samples->start[p]);
-    int count = (int)(samples->start[p + 1] - samples->start[p]);
-    double strain[6] = {0}, B[6][3], H[3][3], nu = options->material.poisson;
-    RefFrame frame = ref_middle_at((const double(*)[3])cracked->shell->X, count, node, part);
+    long from = samples->start[p];
+    RefFieldPlace place = {(int)(samples->start[p + 1] - from), samples->node + from,
+                           (const double(*)[6])(samples->part + from),
+                           (const double(*)[3])cracked->shell->X, u};
+    double strain[6], H[3][3], nu = options->material.poisson;
+    RefFrame frame = ref_field_frame(&place);
     RefFaceStress face[2] = {{.theta = {samples->theta[p][0], samples->theta[p][1]}}};
     if (!ref_thin_is_stiff(&frame, samples->area[p] / samples->weight[p], samples->trace[p]))
         return face[0];
-    for (int n = 0; n < count; n++) {
-        ref_thin_strains(&frame, part[n], B);
-        for (int i = 0; i < 6; i++) strain[i] += sm_dot(B[i], u[node[n]]);
-    }
+    ref_field_strains(&place, &frame, strain);
     ref_thin_law(frame.inverse, nu, H);
     face[0].metric[0] = sm_dot(frame.tangent[0], frame.tangent[0]);
     face[0].metric[1] = sm_dot(frame.tangent[1], frame.tangent[1]);

@@ -43,12 +43,10 @@ void ref_sheet_free(RefSheet *sheet)
 static void weigh(RefSheet *sheet)
 {
     size_t nodes = (size_t)sheet->shell.nodes.count;
-    double *one = sm_alloc(nodes, sizeof *one), *mass = sm_alloc(nodes, sizeof *mass);
-    for (size_t n = 0; n < nodes; n++) one[n] = 1;
-    ref_sparse_apply(&sheet->shell.matrices.mass, 1, one, mass);
+    double *mass = sm_alloc(nodes, sizeof *mass);
+    ref_sparse_sums(&sheet->shell.matrices.mass, mass);
     for (size_t n = 0; n < nodes; n++)
         for (int d = 0; d < 3; d++) sheet->weight[n][d] = mass[n] * sheet->options.gravity[d];
-    free(one);
     free(mass);
 }
 

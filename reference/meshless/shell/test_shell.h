@@ -120,14 +120,12 @@ static inline void weigh_down(const RefShell *shell, const RefShellOptions *opti
                               const double force[3], double *load)
 {
     size_t nodes = (size_t)shell->nodes.count;
-    double *one = sm_alloc(nodes, sizeof *one), *mass = sm_alloc(nodes, sizeof *mass);
-    for (size_t n = 0; n < nodes; n++) one[n] = 1;
-    ref_sparse_apply(&shell->matrices.mass, 1, one, mass);
+    double *mass = sm_alloc(nodes, sizeof *mass);
+    ref_sparse_sums(&shell->matrices.mass, mass);
     for (size_t n = 0; n < nodes; n++)
         for (int d = 0; d < 3; d++)
             load[3 * n + d] +=
                 force[d] * mass[n] / (options->material.density * options->thickness);
-    free(one);
     free(mass);
 }
 

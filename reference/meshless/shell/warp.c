@@ -196,13 +196,10 @@ static void share_mass(const RefShell *shell, RefWarp *warp)
     warp->held = sm_alloc((size_t)warp->pieces, sizeof *warp->held);
     warp->all = sm_alloc((size_t)warp->pieces, sizeof *warp->all);
     sm_pieces_free(&pieces);
-    double *one = sm_alloc((size_t)warp->nodes, sizeof *one);
     double *sum = sm_alloc((size_t)warp->pieces, sizeof *sum);
-    for (long n = 0; n < warp->nodes; n++) one[n] = 1;
-    ref_sparse_apply(M, 1, one, warp->mass);
+    ref_sparse_sums(M, warp->mass);
     for (long n = 0; n < warp->nodes; n++) sum[warp->piece[n]] += warp->mass[n];
     for (long n = 0; n < warp->nodes; n++) warp->mass[n] /= sum[warp->piece[n]];
-    free(one);
     free(sum);
 }
 

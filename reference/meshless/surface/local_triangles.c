@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../../lib/polar.h"
 #include "cloud.h"
 
 enum { NEAR = 32, FIT = 14, MOST_CORNERS = NEAR + 8, MOST_AROUND = 24 };
@@ -27,47 +28,28 @@ typedef struct {
     SmMesh *mesh;
 } Work;
 
-/* The direction of least extent, by cyclic Jacobi rotations of the 3 x 3 matrix of second moments.
- */
-static void least_direction(double A[3][3], double direction[3])
+/* The direction of least extent, of the 3 x 3 matrix of second moments. */
+static void least_direction(double moment[9], double direction[3])
 {
-    double V[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    for (int n = 0; n < 30; n++) {
-        int p = n % 3, q = (n + 1) % 3;
-        if (A[p][q] == 0) continue;
-        double theta = (A[q][q] - A[p][p]) / (2 * A[p][q]);
-        double t = copysign(1, theta) / (fabs(theta) + sqrt(theta * theta + 1));
-        double c = 1 / sqrt(t * t + 1), s = t * c;
-        for (int k = 0; k < 3; k++) {
-            double a = A[k][p], b = A[k][q];
-            A[k][p] = c * a - s * b;
-            A[k][q] = s * a + c * b;
-        }
-        for (int k = 0; k < 3; k++) {
-            double a = A[p][k], b = A[q][k], v = V[k][p], w = V[k][q];
-            A[p][k] = c * a - s * b;
-            A[q][k] = s * a + c * b;
-            V[k][p] = c * v - s * w;
-            V[k][q] = s * v + c * w;
-        }
-    }
+    double V[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     int least = 0;
+    sm_jacobi(3, moment, V, 1e-15);
     for (int k = 1; k < 3; k++)
-        if (A[k][k] < A[least][least]) least = k;
-    for (int d = 0; d < 3; d++) direction[d] = V[d][least];
+        if (moment[4 * k] < moment[4 * least]) least = k;
+    for (int d = 0; d < 3; d++) direction[d] = V[3 * d + least];
 }
 
 /* The normal of the plane that fits points. */
 static void fit_plane(const double (*position)[3], int count, const int *point, double normal[3])
 {
-    double mean[3] = {0}, moment[3][3] = {{0}};
+    double mean[3] = {0}, moment[9] = {0};
     for (int n = 0; n < count; n++)
         for (int d = 0; d < 3; d++) mean[d] += position[point[n]][d] / count;
     for (int n = 0; n < count; n++) {
         double way[3];
         sm_subtract(position[point[n]], mean, way);
         for (int i = 0; i < 3; i++)
-            for (int j = 0; j < 3; j++) moment[i][j] += way[i] * way[j];
+            for (int j = 0; j < 3; j++) moment[3 * i + j] += way[i] * way[j];
     }
     least_direction(moment, normal);
 }
