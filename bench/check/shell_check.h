@@ -6,14 +6,14 @@
 #include "../../reference/meshless/shell_engine.h"
 #include "elastic_check.h"
 
-/* What stays while it moves: shape functions and their slopes, in cells, and that no integration
- * point has fewer covers than the basis has terms; the mass from density, thickness and area; and
- * what rigid motions cost. */
+/* What stays while it moves: at vertices spread over the mesh shape functions are defined and sum
+ * up to 1, their slopes, in cells, to 0; the mass is that of density, thickness and area; rigid
+ * motions cost nothing; and small displacements are the surface's. */
 void bench_shell_check_body(const RefShellBody *body, BenchElasticFound *found);
 
-/* The present state of a runner, which is as it was afterwards: small displacements, a step's
- * residual in the equation of motion, holds after it, points from shape functions computed anew,
- * and whether energy grows without forces and holds. */
+/* The present state of a runner, which is as it was afterwards: a step's residual in the equation
+ * of motion, holds after it, points from shape functions computed anew, and whether energy grows
+ * without forces and holds. Of a shell that does not break. */
 void bench_shell_check_state(BenchRunner *runner, BenchElasticFound *found);
 
 #endif

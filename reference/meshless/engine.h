@@ -41,9 +41,10 @@ struct RefMeshlessOptions {
     long nodes;   /* wanted; 0: REF_MESHLESS_NODES */
     bool uniform; /* octants are all of one size; false: inside they may be twice as large */
     int modes;    /* 0: REF_MESHLESS_MODES, or half of what there is */
-    RefMeshlessBasis basis; /* of the shape functions (meshless eq. 11); covers of the quadratic one
-                             * are twice as wide */
-    double thickness;       /* of a shell (shell_engine.h), mesh units; 0: REF_SHELL_THIN */
+    RefMeshlessBasis basis; /* of a solid's shape functions (meshless eq. 11); covers of the
+                             * quadratic one are twice as wide */
+    double thickness;       /* of a shell, mesh units; 0: REF_SHELL_THIN (shell_engine.h) of its
+                             * longest extent */
     double covers;    /* of a shell with linear functions: how wide covers are, in edges of their
                        * cells; 0: quadratic functions of covers six edges wide */
     double strength;  /* of a shell that breaks, Pa as `material` has it; 0: it does not */

@@ -45,14 +45,15 @@ typedef struct {
 } RefSurfaceMap;
 
 /* Maps the surface. Pieces of up to 1% of the triangles are dropped. Rims are closed, each with a
- * vertex in its middle, that are shorter than a tenth of the root of the area, or than a half if
- * they have three edges or there are more than a map may have. Of handles that are too many, lines
+ * vertex in its middle but those of two edges, that are shorter than a tenth of the root of the
+ * area, or than a half if they have three edges or there are more than a map may have; and an only
+ * rim of three edges, however long. Of handles that are too many, lines
  * around them or through their tunnels are cut that are shorter than a half, and both sides closed.
  * The mesh has passed sm_mesh_prepare(), and is no longer needed afterwards; `name` is for
  * messages. Up to three factorisations of [vertices], for a cap or a sphere one of them and one of
- * [2 * vertices]. The caller frees. Errors: triangulation.h's and solver.h's; SM_INPUT, a surface
- * of another genus or of more rims, and one whose parts stick out so far that over 1% of the
- * triangles collapse in double precision. */
+ * [2 * vertices]; as many again where a triangle is turned over at first. The caller frees. Errors:
+ * triangulation.h's and solver.h's; SM_INPUT, a surface of another genus or of more rims, and one
+ * whose parts stick out so far that over 1% of the triangles collapse in double precision. */
 SmCode ref_surface_map_create(const SmMesh *mesh, const char *name, RefSurfaceMap *map,
                               SmError *error);
 

@@ -62,7 +62,7 @@ SmCode ref_breaking_update(RefBreaking *breaking, SmError *error)
     SmCode code = ref_sheet_renew(sheet, field[0], field[1], field[2], error);
     if (code == SM_OK) {
         project(breaking);
-        ref_sheet_settle(sheet);
+        ref_sheet_anchor(sheet);
         ref_cracked_saved_free(&saved);
     } else
         ref_cracked_restore(&breaking->cracked, &saved);

@@ -7,7 +7,7 @@
 #include "../body/mls.h"
 
 /* Where b is this share of a node's reach, half a cell of covers four cells wide. */
-static const double SOFT = 0.25;
+static const double TIP_REACH = 0.25;
 /* Pieces that meet others end this share of their length beyond them. */
 static const double OVERSHOOT = 1e-6;
 /* Of a side of the rectangle with its margin, in which pieces are looked up. */
@@ -190,7 +190,7 @@ static const int *among(const RefCracks *cracks, const double a[2], const double
 /* Moves the tip on: what is ahead of the arm's pieces grows by `more`. */
 static void lengthen(RefCracks *cracks, int arm, double more)
 {
-    double seen = SOFT * cracks->margin;
+    double seen = TIP_REACH * cracks->margin;
     for (int p = cracks->arm[arm].last; p >= 0; p = cracks->piece[p].previous) {
         RefCrackPiece *piece = cracks->piece + p;
         if (piece->ahead < seen) piece->changed = cracks->now;
@@ -320,7 +320,7 @@ static bool pass(const RefCracks *cracks, bool earlier, const double x[3], const
         const RefCrackPiece *piece = cracks->piece + member[n];
         double f[6], ahead = earlier ? piece->before : piece->ahead;
         if ((earlier && piece->born == cracks->now) || !crosses(piece, x, from)) continue;
-        if (!pass_piece(piece, ahead, x, from, SOFT * reach, f)) return false;
+        if (!pass_piece(piece, ahead, x, from, TIP_REACH * reach, f)) return false;
         ref_mls_multiply(f, part);
     }
     return true;
@@ -346,7 +346,7 @@ bool ref_cracks_changed(const RefCracks *cracks, const double x[2], const double
     for (int n = 0; n < count; n++) {
         const RefCrackPiece *piece = cracks->piece + member[n];
         if (piece->changed != cracks->now || !crosses(piece, x, from)) continue;
-        if (piece->born == cracks->now || piece->before < SOFT * reach) return true;
+        if (piece->born == cracks->now || piece->before < TIP_REACH * reach) return true;
     }
     return false;
 }

@@ -38,7 +38,7 @@ void ref_cracked_free(RefCracked *cracked)
     ref_element_rows_free(&cracked->rows);
     ref_cracks_free(&cracked->cracks);
     ref_nodes_free(&cracked->whole);
-    sm_free_all(cracked->cell, cracked->whole_X, cracked->whole_lift);
+    sm_free_all(cracked->cell, cracked->whole_X, cracked->whole_above);
     *cracked = (RefCracked){.shell = NULL};
 }
 
@@ -81,15 +81,15 @@ static void number_nodes(RefCracked *cracked)
 }
 
 /* How far parameters of the middle surface are from it: half a curvature times a cell's square. */
-static void find_lift(RefCracked *cracked)
+static void find_above(RefCracked *cracked)
 {
     const RefNodes *whole = &cracked->whole;
     RefShape shape = ref_shape_create(whole);
-    cracked->whole_lift = sm_alloc((size_t)whole->count, sizeof *cracked->whole_lift);
+    cracked->whole_above = sm_alloc((size_t)whole->count, sizeof *cracked->whole_above);
     for (long n = 0; n < whole->count; n++) {
         if (!ref_mls_at(whole, cracked->shell->basis, whole->position[n], &shape)) continue;
         RefFrame frame = ref_middle_of((const double(*)[3])cracked->whole_X, &shape);
-        sm_subtract(cracked->whole_X[n], frame.x, cracked->whole_lift[n]);
+        sm_subtract(cracked->whole_X[n], frame.x, cracked->whole_above[n]);
     }
     ref_shape_free(&shape);
 }
@@ -255,7 +255,7 @@ void ref_cracked_create(RefShell *shell, const RefShellOptions *options,
     cracked->whole = copy_nodes(&shell->nodes);
     cracked->whole_X = copy_of(shell->X, nodes, sizeof *shell->X);
     number_nodes(cracked);
-    find_lift(cracked);
+    find_above(cracked);
     shell->nodes.cut = (RefCut){ref_cracks_pass, &cracked->cracks};
     ref_cracked_remake(cracked);
     shell->functions = (RefShellFunctions){functions_at, cracked};
@@ -332,10 +332,10 @@ static void place_parameter(RefCracked *cracked, const RefCrackedCell *cell, int
                             RefShape *whole)
 {
     const RefShell *shell = cracked->shell;
-    const double *lift = cracked->whole_lift[cracked->cell[cell->whole].node[0]];
+    const double *above = cracked->whole_above[cracked->cell[cell->whole].node[0]];
     double x[3], area, trace;
     whole_at(cracked, shell->nodes.position[node], whole, x, &area, &trace);
-    for (int d = 0; d < 3; d++) shell->X[node][d] = x[d] + ldexp(lift[d], -2 * cell->splits);
+    for (int d = 0; d < 3; d++) shell->X[node][d] = x[d] + ldexp(above[d], -2 * cell->splits);
 }
 
 /* Nodes of cells that were split make way for those of new cells, which are marked in `fresh`
@@ -544,7 +544,7 @@ static void add_residual(const RefCracked *cracked, long c, const RefSamples *ol
 }
 
 /* Spreads what sums have lost over the new cells. */
-static void settle_balance(const RefCracked *cracked, const RefCrackedFields *fields,
+static void spread_balance(const RefCracked *cracked, const RefCrackedFields *fields,
                            const Balance *balance)
 {
     double unit =
@@ -599,7 +599,7 @@ static void remake_stale(RefCracked *cracked, const unsigned char *fresh, unsign
         }
         ref_samples_free(&old);
     }
-    if (fields) settle_balance(cracked, fields, &balance);
+    if (fields) spread_balance(cracked, fields, &balance);
     sm_free_all(balance.lost, balance.seen);
     ref_thin_work_free(&work);
     ref_shape_free(&shape);

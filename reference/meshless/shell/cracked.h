@@ -48,9 +48,9 @@ typedef struct {
     long cell_room;
     RefElementRows rows;
     RefCrackedCounts counts;
-    RefNodes whole;          /* nodes of the whole shell, and */
-    double (*whole_X)[3];    /* its middle surface */
-    double (*whole_lift)[3]; /* how far its parameters are from it, at nodes */
+    RefNodes whole;           /* nodes of the whole shell, and */
+    double (*whole_X)[3];     /* its middle surface */
+    double (*whole_above)[3]; /* how far its parameters are from it, at nodes */
 } RefCracked;
 
 /* Takes a shell that was built with these options and has no cracks. `cracked` must not move in

@@ -347,7 +347,7 @@ SmCode ref_sheet_hold(RefSheet *sheet, int grips, const RefSheetGrip *grip, SmEr
     ref_steps_free(&sheet->steps);
     next.steps = steps;
     *sheet = next;
-    ref_sheet_settle(sheet);
+    ref_sheet_anchor(sheet);
     return SM_OK;
 }
 
@@ -382,7 +382,7 @@ SmCode ref_sheet_renew(RefSheet *sheet, const double *u, const double *v, const 
     return SM_OK;
 }
 
-void ref_sheet_settle(RefSheet *sheet)
+void ref_sheet_anchor(RefSheet *sheet)
 {
     start_holds(sheet);
     ref_warp_pull(&sheet->warp, CONST(sheet->weight));

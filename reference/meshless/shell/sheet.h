@@ -81,13 +81,13 @@ void ref_sheet_step(RefSheet *sheet);
 void ref_sheet_pose(RefSheet *sheet);
 
 /* After the shell has changed (cracked.h): its new nodes have these displacements, velocities and
- * places, [3 nodes] each. Nothing is held then. Two factorisations. ref_sheet_settle() is to
+ * places, [3 nodes] each. Nothing is held then. Two factorisations. ref_sheet_anchor() is to
  * follow. Errors, and nothing changed: solver.h's. */
 SmCode ref_sheet_renew(RefSheet *sheet, const double *u, const double *v, const double *moved,
                        SmError *error);
 
 /* Every piece's displacements are what its nodes move by on average, and the surface is posed. */
-void ref_sheet_settle(RefSheet *sheet);
+void ref_sheet_anchor(RefSheet *sheet);
 
 /* How far a hold's points are off, and its tangents, these as turns. */
 void ref_sheet_off(const RefSheet *sheet, int k, double *place, double *turn);
