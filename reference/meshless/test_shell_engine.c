@@ -264,6 +264,46 @@ static void stops_where_a_crack_cannot_be_followed(SmEngine *engine, SmMesh *sur
     sm_mesh_free(&drawn);
 }
 
+/* A ring that is pulled apart by two handles cracks between them, and they go on holding it. */
+TEST(handles_hold_what_cracks)
+{
+    needs_solver();
+    Scene scene = ring_create();
+    scene.options.covers = 4.5;
+    scene.options.strength = 2e4;
+    scene.params.h = 2e-3;
+    scene.params.damping = 0.02;
+    SmEngine *engine = engine_of(&scene);
+    static long left[VERTICES], right[VERTICES];
+    static double x[VERTICES][3];
+    SmHandle handle[2] = {handle_beyond(&scene, -0.42, left), handle_beyond(&scene, 0.44, right)};
+    SmBoundary boundary = {2, handle, 0, NULL};
+    const RefShellBody *body = ref_shell_body(engine);
+    long nodes = body->sheet.shell.nodes.count, changes = 0;
+    for (int step = 1; step <= 40; step++) {
+        long arms = body->breaking->cracked.cracks.pieces;
+        handle[1].pose[0][3] = 0.002 * step;
+        type->bound(engine, &boundary);
+        type->step(engine, NULL);
+        changes += body->breaking->cracked.cracks.pieces > arms;
+        assert_int_equal(body->sheet.holds, 2);
+        for (int k = 0; k < 2 && body->breaking->cracked.cracks.pieces == arms; k++) {
+            double place, turn;
+            ref_sheet_off(&body->sheet, k, &place, &turn);
+            assert_true(place < 1e-6 && turn < 1e-6);
+        }
+    }
+    assert_true(changes > 2 && body->sheet.shell.nodes.count > nodes);
+    type->get(engine, SM_POSITION, x);
+    for (int k = 0; k < 2; k++)
+        for (long p = 0; p < handle[k].count; p++) {
+            const double *rest = scene.mesh.position[handle[k].particle[p]];
+            double wanted[3] = {rest[0] + handle[k].pose[0][3], rest[1], rest[2]};
+            assert_true(sm_square_between(x[handle[k].particle[p]], wanted) < 0.03 * 0.03);
+        }
+    scene_free(&scene, engine);
+}
+
 /* What carries points is what would be made of the shell as it is now. */
 static void check_carried(SmEngine *engine)
 {
