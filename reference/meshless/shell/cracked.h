@@ -72,9 +72,8 @@ typedef struct {
  * keep their parameters, and new ones have what the field was there; what is left of the old field
  * is written to `residual`, so that field + (K + m M)^-1 residual is its projection in the norm of
  * K + m M: this is hardly longer than the field was (samples of cells that were split are others),
- * and the field's sum over the mass, of a velocity the momentum, stays what it was. `fields` may be
- * NULL.
- */
+ * and the field's sum over the mass, of a velocity the momentum, stays what it was, but for samples
+ * that see no node any more, whose mass is gone. `fields` may be NULL. */
 void ref_cracked_update(RefCracked *cracked, RefCrackedFields *fields);
 
 /* What an update changes. */

@@ -89,7 +89,7 @@ TEST(a_strip_bent_by_right_angles_keeps_its_length)
             assert_true(place < 1e-6 && turn < 1e-6);
         }
     }
-    assert_true(fabs(length_along(&sheet) - 1) < 0.02);
+    assert_true(fabs(length_along(&sheet) - 1) < 0.005);
     for (int k = 0; k < 2; k++) free(grip[k].theta);
     ref_sheet_free(&sheet);
 }
