@@ -37,6 +37,7 @@ VIDEOS = {
     ".gif": (25, ["-filter_complex", "split[a][b];[a]palettegen[p];[b][p]paletteuse=dither=none", "-f", "gif"]),
     ".webp": (30, ["-c:v", "libwebp_anim", "-loop", "0", "-q:v", "82", "-f", "webp"]),
 }
+PICTURES = {".png": "image/png", ".webp": "image/webp"}
 USE_SIZE, USE_WIDTH, USE_RATE = (1280, 800), 800, 50 / 3  # the window, and the film of it
 
 
@@ -57,7 +58,7 @@ class Output(argparse.Action):
 
 class Parser(argparse.ArgumentParser):
     def error(self, message):
-        fail(f"{message}; usage: scripts/run view [SCENE] --video FILE | --picture FILE.png [--seconds S] "
+        fail(f"{message}; usage: scripts/run view [SCENE] --video FILE | --picture FILE.png|.webp [--seconds S] "
              "[--size WxH]", 2)
 
 
@@ -71,7 +72,7 @@ def parse():
     parser.add_argument("--size", default="1280x720")
     parser.add_argument("--check", action="store_true")
     options = parser.parse_args()
-    ends = (".png",) if options.what == "picture" else VIDEOS
+    ends = PICTURES if options.what == "picture" else VIDEOS
     options.form = os.path.splitext(options.output)[1].lower()
     if options.form not in ends:
         parser.error(f"{options.output}: a {options.what}'s name ends in {' or '.join(ends)}")
@@ -149,14 +150,14 @@ shapebench.advance(values[0]);
 const { width, height } = document.getElementById('canvas');
 window.filmed ??= Object.assign(document.createElement('canvas'), { width, height });
 shapebench.copyViews(window.filmed);
-return window.filmed.toDataURL('image/png').split(',')[1];
+return window.filmed.toDataURL(values[1], 0.8).split(',')[1];
 """
 
 
 def view_frames(ask, every, count):
     """PNGs of the views, from the scene's start."""
     for n in range(count):
-        yield base64.b64decode(ask(FRAME, every if n else 0))
+        yield base64.b64decode(ask(FRAME, every if n else 0, PICTURES[".png"]))
 
 
 class Pointer:
@@ -298,7 +299,7 @@ def write(options, browser, file):
             frames = round(options.seconds / step)
             for _ in range(frames // 25):  # each call has its limit of time
                 ask("shapebench.advance(25)")
-            file.write(base64.b64decode(ask(FRAME, frames % 25)))
+            file.write(base64.b64decode(ask(FRAME, frames % 25, PICTURES[options.form])))
             return f"the views after {frames * step:.4g} s"
         every, rate = pace(step, VIDEOS[options.form][0])
         count = max(1, round(options.seconds * rate))

@@ -126,6 +126,9 @@ class Film(PageCase):
         self.assertEqual(len(pixels), 300 * 200)
         self.assertTrue(any(p[2] > p[0] + 90 for p in pixels), "nothing is blue")
         self.assertTrue(any(p[0] > p[2] + 90 for p in pixels), "nothing is orange")
+        made = make(self.page, "--picture", self.folder / "p.webp", "--seconds", "0.3", "--size", "300x200")
+        self.assertEqual((made.returncode, made.stderr), (0, ""))
+        self.assertRegex((self.folder / "p.webp").read_bytes()[:16], b"(?s)RIFF....WEBPVP8")
 
     def test_what_cannot_be_done_is_a_line(self):
         few = self.folder / "few"
