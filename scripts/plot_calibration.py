@@ -15,7 +15,7 @@ TONES = ("first", "second", "third")
 
 def legend_below(axes, columns):
     """Under the axis' name: inside it would hide points."""
-    axes.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=columns, frameon=False)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=columns, frameon=False)
 
 
 def valid_grid(specimen):

@@ -46,15 +46,16 @@ def heat_map(axes, plan, point, values, title, logarithmic):
         norm = LogNorm(known.min(), max(known.max(), 1.001 * known.min())) if logarithmic else None
         image = axes.imshow(cells, origin="lower", aspect="auto", cmap="viridis", norm=norm)
         axes.figure.colorbar(image, ax=axes, pad=0.02)
+        size = min(9, 24 * axes.bbox.width / axes.figure.dpi / cells.shape[1])  # three fit in a cell
         for (row, column), value in numpy.ndenumerate(cells):
             if cells.size <= 200 and numpy.isfinite(value):
                 dark = image.norm(value) < 0.6
-                axes.text(column, row, short(value), ha="center", va="center", fontsize=6,
+                axes.text(column, row, short(value), ha="center", va="center", fontsize=size,
                           color="white" if dark else "black")
     names = (["lattice"] if has_lattice else []) + [f"{e:g}" for e in epsilons]
     every = max(1, len(names) // 14)
-    axes.set_xticks(range(len(names))[::every], names[::every], fontsize=7)
-    axes.set_yticks(range(len(ws)), [f"{w:g}" for w in ws], fontsize=7)
+    axes.set_xticks(range(len(names))[::every], names[::every])
+    axes.set_yticks(range(len(ws)), [f"{w:g}" for w in ws])
     if has_lattice:
         axes.axvline(0.5, color="white", linewidth=2)
     axes.set_xlabel("epsilon")
@@ -73,7 +74,7 @@ def name_some(axes, names, at, others):
     for name, place in zip(names, at):
         for distance, angle in itertools.product(range(10, 130, 10), range(45, 405, 30)):
             far = distance * numpy.exp(1j * numpy.radians(angle))
-            note = axes.annotate(name, place, xytext=(far.real, far.imag), textcoords="offset points", fontsize=6,
+            note = axes.annotate(name, place, xytext=(far.real, far.imag), textcoords="offset points", fontsize=9,
                                  ha="left" if far.real >= 0 else "right", va="center",
                                  bbox={"boxstyle": "square,pad=0.1", "facecolor": "white", "edgecolor": "none"},
                                  arrowprops={"arrowstyle": "-", "linewidth": 0.4, "shrinkA": 0, "shrinkB": 2})
@@ -92,8 +93,8 @@ def front(axes, plan, point):
     cost, off = point["total_ms"], 100 * point["path_rms"]
     shown = numpy.isfinite(cost) & numpy.isfinite(off)
     axes.set_title("cost against deviation; rings: the front", fontsize=9)
-    axes.set_xlabel("ms a step")
-    axes.set_ylabel("path off, % rms")
+    axes.set_xlabel("milliseconds a step")
+    axes.set_ylabel("path off, percent of the body's size")
     if not shown.any():
         axes.text(0.5, 0.5, "no valid point has both", ha="center", transform=axes.transAxes)
         return
@@ -109,7 +110,7 @@ def front(axes, plan, point):
     axes.step(cost[best], off[best], where="post", color="0.3", linewidth=1, zorder=0)
     axes.set_xscale("log")
     axes.set_ylim(bottom=-0.03 * max(off[shown].max(), 1e-6))
-    axes.legend(fontsize=7)
+    axes.legend()
     axes.figure.colorbar(dots, ax=axes, pad=0.02, label=unit_of_w(plan))
     some = best[:: max(1, len(best) // 5)]
     name_some(axes, [f"w {point['w'][i]:g}" + (f", {point['epsilon'][i]:g}" if point["sampled"][i] else "")

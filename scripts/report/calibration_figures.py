@@ -66,7 +66,7 @@ def listed(specimen, chosen, *columns):
 
 def modulus(source):
     plan, specimen = source.plan, source.specimen
-    figure, axes = canvas(7.2, 4.6)
+    figure, axes = canvas(5.2)
     plot_calibration.modulus(axes, plan, specimen, source.law)
     grid = plot_calibration.valid_grid(specimen)
     parts = []
@@ -83,7 +83,7 @@ def modulus(source):
 
 def agreement(source):
     plan, specimen = source.plan, source.specimen
-    figure, axes = canvas(7.2, 4.6)
+    figure, axes = canvas(5.2)
     plot_calibration.agreement(axes, plan, specimen)
     valid = specimen["valid"] != 0
     young = plot_calibration.best(plan, specimen)
@@ -98,7 +98,7 @@ def agreement(source):
 
 def collapse(source):
     plan, specimen = source.plan, source.specimen
-    figure, axes = canvas(7.2, 4.6)
+    figure, axes = canvas(5.2)
     plot_calibration.collapse(axes, plan, specimen, source.law)
     valid = specimen["valid"] != 0
     law = source.law

@@ -1,8 +1,10 @@
 """Claims of a report: a table of each kind, and a figure for each group of curves measured for them."""
-import numpy as np
-from matplotlib.ticker import FormatStrFormatter, LogLocator, MaxNLocator
+import re
 
-from drawing import COLOURS, MARKS, PAPER, STATUS_MARKS, Figure, canvas, number
+import numpy as np
+from matplotlib.ticker import MaxNLocator
+
+from drawing import COLOURS, MARKS, PAPER, STATUS_MARKS, Figure, canvas, legend_above, number
 from sources import CLAIM_KINDS
 from tables import Table, explain_marks
 
@@ -28,8 +30,30 @@ GROUPS = {
                  "neighbouring particles of a bar bent and twisted by half a turn; one region a particle (lattice) against "
                  "few overlapping clusters.", "y"),
     "size": ("Cost against size", "Milliseconds a step against the number of particles or nodes.", "xy"),
-    "sag": ("Stiffness against w", "How deep the tip of a clamped beam hangs at rest.", ""),
+    "sag": ("Stiffness against w", "How deep the tip of a clamped beam hangs when it has come to rest: forces are in balance, "
+            "nothing swings.", ""),
+    "elastic-sag": ("Sag of a meshless beam against theory", "The static sag of a clamped beam by that of Timoshenko's beam.", "x"),
+    "regions": ("Summation nodes against epsilon", "Octree section 4.2: epsilon is to bound how many summation nodes a region "
+                "has; by how regions are made symmetric.", ""),
+    "breaking": ("Cost of breaking links", "FastLSM section 5: what a broken link costs, against the size of the body.", "xy"),
 }
+
+# Words for the parts of curves' names and the fields that axes are named by; of others "_" and "-" become spaces.
+WORDS = {
+    "fast": "fast sums", "naive": "added one by one", "bars": "bars alone", "lists": "from lists", "blocks": "in blocks",
+    "sums": "the sums alone", "resolution": "one body, finer and finer", "step": "whole step",
+    "lattice": "a region for every particle", "linear": "clusters of linear matching",
+    "quadratic": "clusters of quadratic matching", "rigid": "clusters of rigid matching",
+    "asymmetric": "not made symmetric", "intersection": "symmetric by intersection", "volume": "masses by volume",
+    "plain": "as printed", "fastlsm": "FastLSM", "octree": "octree", "played": "played", "smoothed": "smoothed alone",
+    "most_summation": "summation nodes of the region with the most", "summation_nodes": "summation nodes of a region, mean",
+    "beyond_percent": "percent of nodes beyond (1 + epsilon) w", "parts": "parts of the body that no region joins",
+    "one-bar": "indices with a single bar", "one-plate": "indices with a single plate",
+    "w": "w, half the width of a region in cells", "particles": "number of particles", "nodes": "number of nodes",
+    "clusters": "number of clusters", "leaves reached": "number of leaves reached", "sag by theory's": "sag over theory's",
+    "additions by the paper's": "additions, times the paper's", "tip's sag, mesh units": "sag of the tip at rest, mesh units",
+}
+UNITS = {"ns/": "nanoseconds a ", "us/": "microseconds a ", "ms/": "milliseconds a "}
 CLASSES = {"reproduced": "good", "not reproduced": "bad", "not as set": "bad", "undecided": "open", "BUSY": "open",
            "INVALID": "invalid"}
 
@@ -98,23 +122,25 @@ def summary(source):
     return f"{held} measured ({source.name}): " + "; ".join(parts) + "."
 
 
+def words(name):
+    """A part of a curve's name, or what an axis is named by, for people: "sums, ms/step" is milliseconds a step."""
+    if name in WORDS:
+        return WORDS[name]
+    for unit, text in UNITS.items():
+        name = name.replace(unit, text)
+    name = re.sub(r"[_|]|(?<=[a-z])-(?=[a-z])", " ", name).replace("/", " and ")
+    return re.sub(r"^w(\d+)$", r"w = \1", name)
+
+
 def label(name, curve):
     """What tells a curve from the others of its group, and the power that fits it."""
-    parts = [part for part in name.split(".")[1:] if part[:1] not in "wn" or "-" not in part]
-    text = " ".join(part for part in parts if not part.isdigit() and part != "profile") or name.split(".")[0]
+    parts = re.sub(r"\.[wn]\d+-\d+\.\d+$", "", name).split(".")[1:]
+    own = [words(part) for part in parts if part not in ("profile", curve["y_name"])]
+    text = ", ".join(own) or words(name.split(".")[0])
     low, high = curve["exponent_low"], curve["exponent_high"]
     if name.startswith(("sums", "size", "body", "distances")) and curve["exponent"] == curve["exponent"]:
         text += f": power {curve['exponent']:.2f} ({low:.2f} to {high:.2f})"
     return text
-
-
-def plain_ticks(axes):
-    """On less than two decades, 3 and 10 instead of powers."""
-    low, high = axes.get_xlim()
-    if high < 100 * low:
-        axes.xaxis.set_minor_locator(LogLocator(subs=(2, 3, 5)))  # all nine run into each other
-        axes.xaxis.set_minor_formatter(FormatStrFormatter("%g"))
-        axes.xaxis.set_major_formatter(FormatStrFormatter("%g"))
 
 
 def kind_of(group):
@@ -137,34 +163,33 @@ def draw_printed(axes, group, curves):
 
 def group_figure(group, curves):
     """`curves` are (name, curve) of one group that have the same axes."""
-    title, caption, logarithmic = GROUPS.get(kind_of(group), (group, "Measured for a claim.", ""))
+    title, caption, logarithmic = GROUPS.get(kind_of(group), (words(group).capitalize(), "Measured for a claim.", ""))
     if group.endswith("-profile"):
         title += ": the profile"
-    figure, axes = canvas(6.4, 3.8)
-    data, words = [], []
+    figure, axes = canvas()
+    data, told = [], []
     for n, (name, curve) in enumerate(curves):
         x, y = curve["x"], curve["y"]
         spread = np.maximum(np.nan_to_num([y - curve["low"], curve["high"] - y]), 0)
         axes.errorbar(x, y, yerr=spread if spread.any() else None, marker=MARKS[n % 7], color=COLOURS[n % 7],
                       markersize=4, capsize=2, linewidth=1.3, label=label(name, curve))
         data += [[name, float(a), float(b), float(c), float(d)] for a, b, c, d in zip(x, y, curve["low"], curve["high"])]
-        words.append(f"{label(name, curve)}: from {number(y[0])} at {number(x[0])} to {number(y[-1])} at {number(x[-1])}")
+        told.append(f"{label(name, curve)}: from {number(y[0])} at {number(x[0])} to {number(y[-1])} at {number(x[-1])}")
     draw_printed(axes, group, curves)
-    axes.set_xlabel(curves[0][1]["x_name"])
-    y_name = curves[0][1]["y_name"]
+    x_name, y_name = (words(curves[0][1][axis]) for axis in ("x_name", "y_name"))
+    axes.set_xlabel(x_name)
     axes.set_ylabel(y_name)
     if "x" in logarithmic:
         axes.set_xscale("log")
-        plain_ticks(axes)
-    else:
+    elif all((curve["x"] == np.rint(curve["x"])).all() for _, curve in curves):
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     if "y" in logarithmic and all((curve["y"] > 0).all() for _, curve in curves):
         axes.set_yscale("log")
     else:
         axes.axhline(0, color=PAPER, linewidth=0.6)
-    axes.legend(loc="lower center", bbox_to_anchor=(0.45, 1.0), ncols=min(3, len(curves)) if len(curves) > 3 else 1)
-    return Figure(group, title, caption, f"{y_name} against {curves[0][1]['x_name']}. "
-                  + "; ".join(words) + ".", ["curve", "x", "y", "low", "high"], data).draw(figure)
+    legend_above(axes, columns=5 if len(curves) > 4 else 2)
+    return Figure(group, title, caption, f"{y_name[:1].upper()}{y_name[1:]} against {x_name}. " + "; ".join(told) + ".",
+                  ["curve", "x", "y", "low", "high"], data).draw(figure)
 
 
 def is_part(name, curve, curves):

@@ -10,6 +10,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 from matplotlib import pyplot  # noqa: E402
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator  # noqa: E402
 
 # Scripts that draw a file by themselves, and what they draw with, are a folder above.
 sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir))
@@ -17,12 +18,13 @@ sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.p
 COLOURS = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#999999"]  # Okabe and Ito
 MARKS = ["o", "s", "^", "D", "v", "P", "X"]
 PAPER = "#777777"
+WIDTH = 12  # inches, of every figure: a page's width at 1,400 pixels then shows 10 points as 16 pixels
 STATUS_MARKS = {"damaged": "?", "second-hand": "*"}  # how a paper's value came to us (results/README.md)
 
 matplotlib.rcParams.update({
     "font.size": 10, "axes.titlesize": 10, "axes.spines.top": False, "axes.spines.right": False,
     "axes.grid": True, "grid.color": "#e4e4e4", "grid.linewidth": 0.7, "axes.axisbelow": True,
-    "axes.prop_cycle": matplotlib.cycler(color=COLOURS), "legend.frameon": False, "legend.fontsize": 9,
+    "axes.prop_cycle": matplotlib.cycler(color=COLOURS), "legend.frameon": False, "legend.fontsize": 10,
     # texts stay texts: small, and found by search; in these fonts, which are as wide, or the reader's own
     "svg.fonttype": "none", "font.sans-serif": ["DejaVu Sans", "Verdana", "sans-serif"],
     "svg.hashsalt": "shapebench", "figure.facecolor": "white", "savefig.facecolor": "white",
@@ -41,6 +43,31 @@ def lighter(svg):
     return re.sub(r"\s*\n\s*", "\n", re.sub(r"<[^>]*>", tag, text)).encode()
 
 
+def tick(value, _=None):
+    """A number beside a logarithmic axis."""
+    if 1e-3 <= value < 1e7:
+        return f"{value:,.7g}"
+    digits, power = f"{value:.0e}".split("e")
+    return f"{'' if digits == '1' else digits + '·'}10$^{{{int(power)}}}$"
+
+
+def label_logarithms(figure):
+    """Every logarithmic axis with the usual ticks has labels that can be read: plain numbers, and where it shows less
+    than two decades those between powers of ten."""
+    for axis in (axis for axes in figure.axes for axis in (axes.xaxis, axes.yaxis)):
+        if axis.get_scale() != "log" or not isinstance(axis.get_major_locator(), LogLocator):
+            continue
+        low, high = sorted(axis.get_view_interval())
+        if high < 3 * low:
+            axis.set_major_locator(MaxNLocator(6))
+            axis.set_minor_locator(NullLocator())
+        else:
+            few = high < 100 * low
+            axis.set_minor_locator(LogLocator(subs=(2, 3, 5) if few else range(2, 10), numticks=99))
+            axis.set_minor_formatter(FuncFormatter(tick) if few else NullFormatter())
+        axis.set_major_formatter(FuncFormatter(tick))
+
+
 class Figure:
     """A picture with its caption, a text that says the same in words, and its data."""
 
@@ -52,9 +79,10 @@ class Figure:
     def draw(self, figure):
         """Keeps both forms of a matplotlib figure and closes it."""
         pictures = {}
-        for form, options in (("svg", {"metadata": {"Date": None}}), ("png", {"dpi": 160})):
+        label_logarithms(figure)
+        for form, options in (("svg", {"metadata": {"Date": None}}), ("png", {"dpi": 120})):
             room = io.BytesIO()
-            figure.savefig(room, format=form, bbox_inches="tight", pad_inches=0.08, **options)
+            figure.savefig(room, format=form, **options)
             pictures[form] = room.getvalue()
         pyplot.close(figure)
         self.svg, self.png = lighter(pictures["svg"]), pictures["png"]
@@ -78,8 +106,14 @@ def cell(value):
     return f"'{value}" if isinstance(value, str) and value[:1] in tuple("=+-@\t\r") else value
 
 
-def canvas(width=7.2, height=3.6, **options):
-    return pyplot.subplots(figsize=(width, height), **options)
+def canvas(height=4.4):
+    """A figure as wide as the page, and its axes."""
+    return pyplot.subplots(figsize=(WIDTH, height), layout="constrained")
+
+
+def legend_above(axes, *what, columns=5):
+    """Begins at the left, which narrow windows show first."""
+    axes.legend(*what, loc="lower left", bbox_to_anchor=(0, 1), ncols=columns, columnspacing=1.5, borderaxespad=0.2)
 
 
 def number(value, digits=3):

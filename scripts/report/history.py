@@ -112,7 +112,7 @@ def draw_marks(axes, found):
                                        if mark["file"] == at))
         axes.axvline(at - 0.5, color=PAPER, linestyle="--", linewidth=1)
         axes.annotate(textwrap.fill(what, 24), (at - 0.5, 1), xycoords=("data", "axes fraction"), xytext=(2, 2),
-                      textcoords="offset points", fontsize=7, color="#444444", rotation=35, va="bottom")
+                      textcoords="offset points", fontsize=9, color="#444444", rotation=35, va="bottom")
 
 
 def name_files(axes, sources):
@@ -120,13 +120,13 @@ def name_files(axes, sources):
     many = len(sources) > 6
     texts = [f"{s.commit}\n{s.machine['utc'][:10]}" if many else f"{s.name}\n{s.commit}\n{s.machine['utc'][:16]}"
              for s in sources]
-    axes.set_xticks(range(0, len(sources), every), texts[::every], fontsize=7 if many else 8,
+    axes.set_xticks(range(0, len(sources), every), texts[::every], fontsize=8 if many else 9,
                     rotation=90 if many else 0)
 
 
 def figure(found):
     """All series, relative to their first."""
-    canvas_, axes = canvas(7.2 if len(found["sources"]) < 16 else 9, 3.8)
+    canvas_, axes = canvas(4.6)
     data, words = [], []
     for n, series in enumerate(found["series"]):
         points = series["points"]

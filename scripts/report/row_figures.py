@@ -2,7 +2,7 @@
 scenes that change, and threads."""
 import numpy as np
 
-from drawing import COLOURS, MARKS, PAPER, STATUS_MARKS, Figure, canvas, number
+from drawing import COLOURS, MARKS, PAPER, STATUS_MARKS, Figure, canvas, legend_above, number
 from tables import explain_marks, of_stages, stage_names
 
 STAGE_TITLES = {"fast_sum": "fast sum", "shape_matching": "shape matching", "polar": "polar decomposition",
@@ -19,7 +19,7 @@ def share_bars(axes, y, values, height, alpha, statuses=()):
         axes.barh(y, value, height, left=left, color=COLOURS[s % len(COLOURS)], alpha=alpha)
         left += value
     for s, status in enumerate(statuses):
-        axes.text(sum(values[:s]) + values[s] / 2, y, STATUS_MARKS.get(status, ""), ha="center", va="center", fontsize=7)
+        axes.text(sum(values[:s]) + values[s] / 2, y, STATUS_MARKS.get(status, ""), ha="center", va="center", fontsize=9)
 
 
 def stage_shares(rows):
@@ -28,7 +28,7 @@ def stage_shares(rows):
     if not rows:
         return None
     stages = stage_names(rows)
-    figure, axes = canvas(7.2, 0.9 + 0.36 * len(rows))
+    figure, axes = canvas(1 + 0.36 * len(rows))
     data, shown, marked = [], [], []
     for y, row in enumerate(rows):
         shares = 100 * np.array(of_stages(row, "stage_ms", stages, 0.0)) / row["total_ms"]
@@ -48,9 +48,8 @@ def stage_shares(rows):
     axes.set_xlim(0, 100)
     axes.grid(axis="y", visible=False)
     axes.set_xlabel("percent of a step")
-    axes.legend([axes.barh(0, 0, color=COLOURS[s % len(COLOURS)]) for s in range(len(stages))],
-                [STAGE_TITLES.get(s, s) for s in stages], ncols=5, loc="lower center", bbox_to_anchor=(0.45, 1.0),
-                columnspacing=1, handlelength=1)
+    legend_above(axes, [axes.barh(0, 0, color=COLOURS[s % len(COLOURS)]) for s in range(len(stages))],
+                 [STAGE_TITLES.get(s, s) for s in stages])
     most = [row["stage_names"][int(np.argmax(row["stage_ms"]))] for row in rows]
     largest = [f"{row['scene']}: {STAGE_TITLES.get(name, name)} most" for row, name in zip(rows, most)]
     return Figure("stage-shares", "Where a step's time goes",
@@ -65,7 +64,7 @@ def beside_paper(rows):
     rows = valid(rows)
     if not any(row["paper_ns"] > 0 for row in rows):
         return None
-    figure, axes = canvas(7.2, 0.9 + 0.3 * len(rows))
+    figure, axes = canvas(1 + 0.3 * len(rows))
     data = []
     for y, row in enumerate(rows):
         ns, paper = row["ns_per_particle_step"], row["paper_ns"]
@@ -80,8 +79,8 @@ def beside_paper(rows):
     axes.set_yticks(range(len(rows)), [row["scene"] for row in rows])
     axes.set_ylim(len(rows) - 0.4, -0.6)
     axes.set_xlabel("nanoseconds per particle and step (logarithmic)")
-    axes.legend([axes.plot([], [], "o", color=COLOURS[0])[0], axes.plot([], [], "D", color=PAPER, markersize=5)[0]],
-                ["measured here", "the paper, its machine"], ncols=2, loc="lower center", bbox_to_anchor=(0.45, 1.0))
+    legend_above(axes, [axes.plot([], [], "o", color=COLOURS[0])[0], axes.plot([], [], "D", color=PAPER, markersize=5)[0]],
+                 ["measured here", "the paper, its machine"])
     times = [f"{scene} {number(ns)} against {number(paper)}{STATUS_MARKS.get(status, '')}"
              for scene, ns, paper, status in data if paper]
     return Figure("beside-paper", "Cost of a particle and step",
@@ -94,16 +93,16 @@ def beside_paper(rows):
 def frames(row):
     """What each frame of a scene that changes cost."""
     time = row["frames_samples"] * 1e3
-    figure, axes = canvas(7.2, 3.2)
+    figure, axes = canvas(3.8)
     names = ["simulation", "resampling", "splitting of surfaces", "moving a surface"]
     count = np.arange(1, len(time) + 1)
     for part, name in enumerate(names):
         shown = np.where(time[:, part] > 0, time[:, part], np.nan)
         axes.plot(count, shown, "-" if part in (0, 3) else MARKS[part], markersize=3, linewidth=1.2, label=name)
     axes.set_yscale("log")
-    axes.set_xlabel("frame")
-    axes.set_ylabel("milliseconds (logarithmic)")
-    axes.legend(ncols=4, loc="lower center", bbox_to_anchor=(0.45, 1.0), columnspacing=1)
+    axes.set_xlabel("frame of the scene")
+    axes.set_ylabel("milliseconds a frame (logarithmic)")
+    legend_above(axes)
     return Figure(f"frames-{row['scene']}", f"Frames of {row['scene']}",
                   f"{row['change.changed']} of {len(time)} frames change the body; resampling in others finds nothing to "
                   "change. Each time is the least of three rounds.",
@@ -128,7 +127,7 @@ def threads(sources):
     curves = {name: sorted(times.items()) for name, times in best.items() if len(times) > 1}
     if not curves:
         return None
-    figure, axes = canvas(5.2, 3.6)
+    figure, axes = canvas(3.6)
     data = []
     for n, (name, times) in enumerate(sorted(curves.items(), key=str)):
         count = [t for t, _ in times]
@@ -139,8 +138,8 @@ def threads(sources):
     axes.plot([1, most], [1, most], color=PAPER, linestyle=":", label="as many times as threads")
     axes.set_xticks(sorted({line[2] for line in data}))
     axes.set_xlabel("threads")
-    axes.set_ylabel("times as fast as with the fewest")
-    axes.legend(loc="center left", bbox_to_anchor=(1, 0.5))
+    axes.set_ylabel("times as fast as with the fewest threads")
+    legend_above(axes)
     words = [f"{scene} {number(gain)} times as fast with {t}" for scene, _, t, _, gain in data if t > 1]
     return Figure("threads", "Threads", "Medians of a step, of rows that several files hold with different threads.",
                   "; ".join(words) + ".", ["scene", "engine", "threads", "total_ms", "gain"], data).draw(figure)

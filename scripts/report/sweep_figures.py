@@ -35,7 +35,7 @@ def heat_map(source, name, factor, file_name, title, logarithmic, caption):
     known = np.flatnonzero(np.isfinite(values))
     if not len(known) or np.ptp(values[known]) == 0:
         return None
-    figure, axes = canvas(7.2, 1.3 + 0.3 * len(np.unique(point["w"])))
+    figure, axes = canvas(1.1 + 0.3 * len(np.unique(point["w"])))
     axes.grid(visible=False)
     plot_sweep.heat_map(axes, source.plan, point, values, "", logarithmic)
     least, most = known[np.argmin(values[known])], known[np.argmax(values[known])]
@@ -47,7 +47,7 @@ def heat_map(source, name, factor, file_name, title, logarithmic, caption):
 
 def front(source):
     point = source.point
-    figure, axes = canvas(7.2, 4.2)
+    figure, axes = canvas(4.8)
     plot_sweep.front(axes, source.plan, point)
     axes.set_title("")
     best = on_front(point)
