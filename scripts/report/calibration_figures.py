@@ -3,7 +3,7 @@ agreement and law. How they are drawn is scripts/plot_calibration.py's matter.""
 import numpy as np
 
 from drawing import Figure, canvas, number
-from tables import Table, where
+from tables import ALIKE, Table, where
 
 import plot_calibration
 
@@ -18,6 +18,10 @@ def pascals(value):
     return "–" if value != value else f"{value:.3g}"
 
 
+def megapascals(value):
+    return number(1e-6 * float(value))
+
+
 def summary(source):
     """What the program wrote about the figures of this file, three sentences."""
     return " ".join(source.found)
@@ -28,9 +32,9 @@ def estimate(values):
 
 
 def law_table(source):
-    table = Table(f"What Young's modulus follows from, {source.name}",
+    table = Table("What Young's modulus follows from",
                   ["engine", "law", "specimens", "c", "spacing^p", "w^q", "aspect^s", "1/h^r", "d", "off by, %"],
-                  "With 95% confidence intervals. Powers, of regions narrower or wider than the beam is thick: "
+                  f"Of {source.name}, with 95% confidence intervals. Powers, of regions narrower or wider than the beam is thick: "
                   "E = c rho spacing^p w^q aspect^s / h^r. Two-term, of all: E = rho (spacing/h)^2 w (w+1) "
                   "(c + d w (w+1) (spacing/thickness)^2).")
     law = source.law
@@ -44,18 +48,18 @@ def law_table(source):
 def grid_table(source):
     plan, specimen = source.plan, source.specimen
     by = plot_calibration.best(plan, specimen)
-    table = Table(f"Young's modulus on the scene's beam, Pa at {plan['density']:g} kg/m³, {source.name}",
+    table = Table(f"Young's modulus on the scene's beam, MPa at {plan['density']:g} kg/m³",
                   ["engine", "E", "by the sag", "by f1", "by f2", "by f3", "apart, %", "Timoshenko, sag",
                    "Euler-Bernoulli, sag", "f1, Hz", "check"],
-                  "By the " + ("meshless reference" if plan["meshless"] else "theory of Timoshenko's beam")
+                  f"Of {source.name}. By the " + ("meshless reference" if plan["meshless"] else "theory of Timoshenko's beam")
                   + " unless another is named. E: geometric mean of sag and first frequency.")
     for i in np.flatnonzero(specimen["set"] == "grid"):
         good = specimen["valid"][i] != 0
-        table.add([where(specimen, i), pascals(specimen["young"][i])] + [pascals(value) for value in by[i]]
-                  + [number(100 * float(specimen["spread"][i])), pascals(specimen["young_timoshenko"][i][0]),
-                     pascals(specimen["young_euler"][i][0]), number(float(specimen["frequency"][i][0])),
+        table.add([where(specimen, i), megapascals(specimen["young"][i])] + [megapascals(value) for value in by[i]]
+                  + [number(100 * float(specimen["spread"][i])), megapascals(specimen["young_timoshenko"][i][0]),
+                     megapascals(specimen["young_euler"][i][0]), number(float(specimen["frequency"][i][0])),
                      "VALID" if good else "INVALID: " + specimen["reason"][i]], "" if good else "invalid")
-    return table
+    return table.fold(ALIKE)
 
 
 def listed(specimen, chosen, *columns):

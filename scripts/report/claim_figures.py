@@ -54,12 +54,14 @@ WORDS = {
     "additions by the paper's": "additions, times the paper's", "tip's sag, mesh units": "sag of the tip at rest, mesh units",
 }
 UNITS = {"ns/": "nanoseconds a ", "us/": "microseconds a ", "ms/": "milliseconds a "}
-CLASSES = {"reproduced": "good", "not reproduced": "bad", "not as set": "bad", "undecided": "open", "BUSY": "open",
+CLASSES = {"reproduced": "good", "not reproduced": "bad", "not as set": "bad", "undecided": "open", "differs": "open", "BUSY": "open",
            "INVALID": "invalid"}
 
 
 def value_text(values):
-    return " / ".join(number(v) for v in values)
+    """Three a line."""
+    texts = [number(v) for v in values]
+    return " /\n".join(" / ".join(texts[i:i + 3]) for i in range(0, len(texts), 3))
 
 
 def with_interval(value, low, high):
@@ -88,26 +90,33 @@ KINDS = {
 
 def kind_table(source, kind):
     title, heading, text, note = KINDS[kind]
-    table = Table(f"{title}: claims, {source.name}",
-                  ["claim", "verdict", "the paper says, and beneath it why the verdict", "paper", "measured", "unit", heading,
-                   "evidence"],
-                  note + "Brackets hold 95% confidence intervals. Evidence is where in the file the measurement is.")
+    table = Table(f"{title}: claims",
+                  ["claim", "verdict", "the paper says, and beneath it why the verdict", "paper", "measured", "unit", heading],
+                  note + f"Of {source.name}. Brackets hold 95% confidence intervals.")
     claims = [claim for claim in source.claims if claim["kind"] == kind]
     for claim in claims:
         paper = value_text(claim["paper_value"][:claim["values"]])
         paper = paper + STATUS_MARKS.get(claim["status"], "") if paper else "–"
-        evidence = " over ".join(claim[name] for name in ("evidence", "over") if claim[name])
-        evidence += f", not set {claim['unset_evidence']}" if claim["unset_evidence"] else ""
         why = "" if claim["words"] == claim["test"] else "\n" + claim["words"]
         table.add([f"{claim['paper']} {claim['name']}", claim["verdict"], f"{claim['statement']} ({claim['place']}){why}",
-                   paper, measured_text(claim), claim["unit"], text(claim), evidence],
+                   paper, measured_text(claim), claim["unit"], text(claim)],
                   CLASSES.get(claim["verdict"], ""))
     table.note += explain_marks(claim["status"] for claim in claims if claim["values"])
     return table
 
 
+def evidence_table(source):
+    table = Table("Where the evidence of each claim is", ["claim", "in the file"], f"Of {source.name}.", folded=True)
+    for claim in source.claims:
+        evidence = " over ".join(claim[name] for name in ("evidence", "over") if claim[name])
+        evidence += f", not set {claim['unset_evidence']}" if claim["unset_evidence"] else ""
+        table.add([f"{claim['paper']} {claim['name']}", evidence])
+    return table
+
+
 def claim_tables(source):
-    return [kind_table(source, kind) for kind in CLAIM_KINDS if any(c["kind"] == kind for c in source.claims)]
+    return [kind_table(source, kind) for kind in CLAIM_KINDS
+            if any(c["kind"] == kind for c in source.claims)] + [evidence_table(source)]
 
 
 def summary(source):
@@ -208,4 +217,8 @@ def figures(source):
         groups.setdefault((group, curve["x_name"], curve["y_name"]), []).append((name, curve))
     order = list(GROUPS)
     ranked = sorted(groups, key=lambda g: (order.index(kind_of(g[0])) if kind_of(g[0]) in order else 99, g))
-    return [group_figure(key[0], groups[key]) for key in ranked]
+    made = [group_figure(key[0], groups[key]) for key in ranked]
+    for (group, x_name, y_name), figure in zip(ranked, made):
+        if sum(group == other for other, _, _ in ranked) > 1:
+            figure.title += f": {words(y_name)}"
+    return made

@@ -106,7 +106,7 @@ def cell(value):
     return f"'{value}" if isinstance(value, str) and value[:1] in tuple("=+-@\t\r") else value
 
 
-def canvas(height=4.4):
+def canvas(height=3.9):
     """A figure as wide as the page, and its axes."""
     return pyplot.subplots(figsize=(WIDTH, height), layout="constrained")
 

@@ -161,7 +161,7 @@ def side_by_side(program, found):
     old, new = max(shared, key=lambda pair: pair[1] - pair[0])
     old, new = found["sources"][old], found["sources"][new]
     compared = ask(program, "regress", "--format", "json", "--quiet", "--", old.path, new.path)
-    table = Table(f"Side by side: A is {old.name}, B is {new.name}",
+    table = Table("Side by side: the oldest file and the newest",
                   ["scene", "time", "A ms", "B ms", "B / A", "95%", "threshold", "verdict"],
                   f"A: {named(old)}. B: {named(new)}. {compared['verdict'][:1].upper()}{compared['verdict'][1:]}. Repeats are "
                   "the samples; shapebench regress A.h5 B.h5 does this of any two files."

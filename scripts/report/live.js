@@ -1,6 +1,7 @@
-// live.js - opens the live page that is packed in this report, with the scene of the button that was pressed.
+// live.js - opens the live page that is packed in this report, with the scene of the card that was pressed.
 
-const say = (section, words) => { section.querySelector('[role=status]').textContent = words; };
+const cards = [...document.querySelectorAll('.card')];
+const place = document.querySelector('.place'), status = place.querySelector('[role=status]');
 
 async function unpack() {
     const packed = document.getElementById('live-page').textContent.trim();
@@ -8,35 +9,39 @@ async function unpack() {
     return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'))).text();
 }
 
-// The page in this section, begun where it is not there yet; it leaves every other section.
-async function begin(section) {
-    const there = section.querySelector('iframe');
+// The page, begun where it is not there yet.
+async function begin() {
+    const there = place.querySelector('iframe');
     if (there) return there.contentWindow.shapebench;
-    for (const frame of document.querySelectorAll('.live iframe')) frame.remove();
     const frame = Object.assign(document.createElement('iframe'), { title: 'FastLSM and octree, live' });
     frame.srcdoc = await unpack();
     await new Promise((done) => {
         frame.addEventListener('load', done);
-        section.append(frame);
+        place.append(frame);
     });
     await frame.contentWindow.shapebench.ready;
     frame.contentDocument.getElementById('link').hidden = true; // a report has no address to carry a scene
     return frame.contentWindow.shapebench;
 }
 
-async function open(section, name) {
-    const page = await begin(section);
+async function open(name) {
+    const page = await begin();
     const text = page.engine.sceneText(name);
     return text ? page.open(text, false) : `${name} is not built in: the page has not got it.`;
 }
 
-for (const button of document.querySelectorAll('.live button'))
-    button.addEventListener('click', async () => {
-        const section = button.closest('.live');
-        say(section, `Opening ${button.textContent} …`);
+cards.forEach((card, n) => {
+    card.style.order = 2 * n;
+    card.querySelector('button').addEventListener('click', async () => {
+        const name = card.querySelector('button').textContent;
+        place.style.order = 2 * n + 1; // beneath the card's row, for other cards fill that; moved in the page it began anew
+        status.textContent = `Opening ${name} …`;
+        place.scrollIntoView({ block: 'nearest' });
         try {
-            say(section, await open(section, button.textContent));
+            status.textContent = await open(name);
         } catch (error) {
-            say(section, `The page cannot run here: ${error.message}`);
+            status.textContent = `The page cannot run here: ${error.message}`;
         }
+        place.scrollIntoView({ block: 'nearest' });
     });
+});

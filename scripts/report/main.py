@@ -32,6 +32,7 @@ try:
     import calibration_figures
     import claim_figures
     import draft
+    import headline
     import history
     import live
     import row_figures
@@ -47,32 +48,31 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 
 
 class Part:
-    """A section of the page; `scenes` of its tables can be opened live."""
+    """A section of the page; `cards` are of scenes, which can be opened live."""
 
-    def __init__(self, id, title, sentences=(), tables=(), figures=(), scenes=()):
-        self.id, self.title, self.scenes = id, title, list(scenes)
+    def __init__(self, id, title, sentences=(), tables=(), figures=(), cards=()):
+        self.id, self.title, self.cards = id, title, list(cards)
         self.sentences, self.tables, self.figures = list(sentences), list(tables), list(figures)
+
+
+def scenes_part(files):
+    cards = live.cards(files)
+    return Part("scenes", "The scenes", cards=cards) if cards else None
 
 
 def measured_part(files):
     rows = [row for source in files for row in source.rows]
     if not rows:
         return None
-    bad = [row["scene"] for row in rows if not row["valid"]]
-    busy = [row["scene"] for row in rows if row["valid"] and row["total_ms"] != row["total_ms"]]
-    sentences = [f"{len(rows)} rows were measured; each was checked on the very scene timed: "
-                 + ("all are VALID." if not bad else f"{len(bad)} are INVALID and have no times: {', '.join(bad)}.")]
-    if busy:
-        sentences.append(f"Other programs left no undisturbed time to {', '.join(busy)}: they are BUSY.")
-    return Part("measured", "Measured beside the papers", sentences, tables.all_tables(files),
-                row_figures.all_figures(files), live.scenes(files))
+    return Part("measured", "Measured beside the papers", headline.validity(rows), tables.all_tables(files),
+                row_figures.all_figures(files))
 
 
-def history_part(program, found):
-    if not found:
+def history_part(program, past):
+    if not past:
         return None
-    return Part("history", "From file to file", history.sentences(found), [history.side_by_side(program, found)],
-                [history.figure(found)])
+    return Part("history", "From file to file", history.sentences(past), [history.side_by_side(program, past)],
+                [history.figure(past)])
 
 
 def claims_part(files):
@@ -90,8 +90,7 @@ def sweeps_part(files):
         return None
     return Part("sweeps", "Which w, which epsilon", map(sweep_figures.summary, files),
                 map(sweep_figures.front_table, files),
-                [figure for source in files for figure in sweep_figures.figures(source)],
-                dict.fromkeys(source.plan["scene"] for source in files))
+                [figure for source in files for figure in sweep_figures.figures(source)])
 
 
 def calibrations_part(files):
@@ -105,19 +104,19 @@ def calibrations_part(files):
 
 
 def compose(program, files):
-    found = history.read(program, files)
-    if found:
-        files = [source for source in files if source not in history.superseded(found)]
-    parts = [measured_part(files), history_part(program, found), claims_part(files), sweeps_part(files), calibrations_part(files),
-             Part("environment", "Where and how", tables=[tables.environment(files)])]
-    return [part for part in parts if part]
+    """What was found, in sentences, and the sections."""
+    past = history.read(program, files)
+    if past:
+        files = [source for source in files if source not in history.superseded(past)]
+    parts = [scenes_part(files), measured_part(files), history_part(program, past), claims_part(files), sweeps_part(files),
+             calibrations_part(files), Part("environment", "Where and how", tables=[tables.environment(files)])]
+    return headline.found(program, files, past), [part for part in parts if part]
 
 
 def summary(files):
-    machines = sorted({source.machine.get("cpu", "an unknown processor") for source in files})
     days = sorted({source.machine.get("utc", "")[:10] for source in files} - {""})
     when = "" if not days else f", {days[0]}" if days[0] == days[-1] else f", {days[0]} to {days[-1]}"
-    return f"Shape-matching deformation on {' and '.join(machines)}{when}."
+    return f"Shape-matching deformation on {tables.joined(headline.processors(files))}{when}."
 
 
 def read_text(name):
@@ -125,13 +124,20 @@ def read_text(name):
         return Markup(file.read())
 
 
-def page(title, packed, files, parts, picture, data_link):
+class Page:
+    """What every form of the report has: its title, the live page or None, files, headline and sections."""
+
+    def __init__(self, title, packed, files, found, parts):
+        self.title, self.packed, self.files, self.found, self.parts = title, packed, files, found, parts
+
+
+def render(page, picture, data_link):
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), autoescape=True,
                                      undefined=jinja2.StrictUndefined)
     return environment.get_template("page.html").render(
-        title=title, made_by=MADE_BY, summary=summary(files), style=read_text("style.css"), parts=parts, picture=picture,
-        data_link=data_link, live=packed, script=read_text("live.js"),
-        contents=[(part.id, part.title) for part in parts], files=[source.name for source in files])
+        title=page.title, made_by=MADE_BY, summary=summary(page.files), style=read_text("style.css"), found=page.found,
+        parts=page.parts, picture=picture, data_link=data_link, live=page.packed, script=read_text("live.js"),
+        contents=[(part.id, part.title) for part in page.parts], files=[source.name for source in page.files])
 
 
 def inline(figure):
@@ -158,10 +164,10 @@ def write_file(path, content):
         os.fsync(file.fileno())
 
 
-def write_page(output, title, packed, files, parts, overwrite):
+def write_page(output, page, overwrite):
     """One file, whole or not at all."""
     with draft.begun(output, overwrite) as file:
-        file.write(page(title, packed, files, parts, inline, inline_data).encode())
+        file.write(render(page, inline, inline_data).encode())
 
 
 def may_replace(folder):
@@ -199,17 +205,17 @@ def check_folder(output, overwrite):
         raise draft.Refused(f"{output}: cannot be written: it is there; choose another name, or give --overwrite")
 
 
-def write_folder(output, title, packed, files, parts, overwrite):
+def write_folder(output, page, overwrite):
     """A folder of a page and its figures, in place of an older report of that name."""
     check_folder(output, overwrite)
     parent = os.path.dirname(os.path.abspath(output))
     made = tempfile.mkdtemp(prefix=os.path.basename(output) + ".", suffix=".tmp", dir=parent)
     try:
         os.chmod(made, 0o755)
-        for figure in (figure for part in parts for figure in part.figures):
+        for figure in (figure for part in page.parts for figure in part.figures):
             for form, content in (("svg", figure.svg), ("png", figure.png), ("csv", figure.csv().encode())):
                 write_file(os.path.join(made, f"{figure.name}.{form}"), content)
-        text = page(title, packed, files, parts, linked, lambda figure: f"{figure.name}.csv")
+        text = render(page, linked, lambda figure: f"{figure.name}.csv")
         write_file(os.path.join(made, "index.html"), text.encode())
         take_place(made, output)
     except BaseException:
@@ -241,7 +247,7 @@ def unique_names(parts):
 
 def find_page(options, parts):
     """The live page, packed, where there are scenes to open and nobody leaves it out."""
-    if options.no_page or not any(part.scenes for part in parts):
+    if options.no_page or not any(part.cards for part in parts):
         return None
     packed = live.packed()
     if not packed:
@@ -263,13 +269,13 @@ def main():
     except sources.Unusable as error:
         fail(str(error), 3)
     try:
-        parts = compose(options.program, files)
+        found, parts = compose(options.program, files)
     except sources.Unusable as error:
         fail(str(error), 3)
     unique_names(parts)
     write = write_page if alone else write_folder
     try:
-        write(output, options.title, find_page(options, parts), files, parts, options.overwrite)
+        write(output, Page(options.title, find_page(options, parts), files, found, parts), options.overwrite)
     except draft.Refused as error:
         fail(str(error), 4)
     except OSError as error:

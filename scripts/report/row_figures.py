@@ -3,7 +3,7 @@ scenes that change, and threads."""
 import numpy as np
 
 from drawing import COLOURS, MARKS, PAPER, STATUS_MARKS, Figure, canvas, legend_above, number
-from tables import explain_marks, of_stages, stage_names
+from tables import explain_marks, of_stages, scenes_of, stage_names
 
 STAGE_TITLES = {"fast_sum": "fast sum", "shape_matching": "shape matching", "polar": "polar decomposition",
                 "damping": "damping", "other": "other"}
@@ -152,7 +152,7 @@ def all_figures(sources):
         for make in (beside_paper, stage_shares):
             figure = make(group)
             if figure:
-                figure.source = source
+                figure.title += f": {scenes_of(source)}"
                 made.append(figure)
         made += [frames(row) for row in valid(group) if "frames_samples" in row]
     made += [figure for figure in [threads(sources)] if figure]

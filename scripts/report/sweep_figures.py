@@ -68,9 +68,9 @@ def on_front(point):
 
 def front_table(source):
     point = source.point
-    table = Table(f"The front of {source.plan['scene']}, {source.name}",
+    table = Table(f"The front of {source.plan['scene']}: what is cheapest and nearest",
                   ["point", "ms a step", "path off, %", "most, %", "goals off, cells", "frequency, Hz", "sag, %",
-                   "sums/region", "set-up ms", "MB"], "No other valid point is as cheap and as near.")
+                   "sums/region", "set-up ms", "MB"], f"Of {source.name}. No other valid point is as cheap and as near.")
     for i in on_front(point):
         table.add([where(point, i)] + [number(float(v)) for v in (
             point["total_ms"][i], 100 * point["path_rms"][i], 100 * point["path_most"][i], point["goal_rms"][i],

@@ -1,5 +1,6 @@
 """Tables of a report: headings and lines of texts, numbers as people read them."""
 import math
+import re
 
 from drawing import STATUS_MARKS, number
 
@@ -13,11 +14,31 @@ class Table:
     def add(self, cells, kind=""):
         self.lines.append((kind, cells))
 
+    def fold(self, words):
+        """What all rows have alike goes into the note ("All: octree, 1 thread."): `words` makes a text of a heading's
+        value, or None of one that stays. Columns in which nothing is known go too. A paper's rows are not asked."""
+        own = [cells for kind, cells in self.lines if kind != "paper"]
+        one = {heading: {cells[i] for cells in own} for i, heading in enumerate(self.headings)}
+        said = {heading: word(*one[heading]) for heading, word in words.items() if len(one.get(heading, ())) == 1}
+        said = {heading: text for heading, text in said.items() if text}
+        kept = [i for i, heading in enumerate(self.headings)
+                if heading not in said and any(cells[i] not in ("", "–") for _, cells in self.lines)]
+        self.headings = [self.headings[i] for i in kept]
+        self.lines = [(kind, [cells[i] for i in kept]) for kind, cells in self.lines]
+        if said:
+            self.note += f" All: {', '.join(said.values())}."
+        return self
+
     def classes(self):
-        """Of each column: numbers (""), texts, which begin at the left, or long texts, which want room."""
-        longest = [max((len(cells[i]) for _, cells in self.lines if isinstance(cells[i], str)), default=0)
-                   for i in range(len(self.headings))]
-        return ["text long" if length > 80 else "text" if length > 24 else "" for length in longest]
+        """Of each column: numbers (""), which never wrap, words, texts, or long texts, which want room."""
+        columns = [[cells[i] for _, cells in self.lines if isinstance(cells[i], str)] for i in range(len(self.headings))]
+        return [class_of(column) for column in columns]
+
+
+def class_of(column):
+    texts = [text for text in column if not re.fullmatch(r"[-–\d.,()%*?/+e to\n]*", text)]
+    longest = max(map(len, texts), default=0)
+    return "text long" if longest > 80 else "text" if longest > 24 else "word" if texts else ""
 
 
 def explain_marks(statuses):
@@ -55,17 +76,42 @@ def measured_times(row, names):
     return times(values, [100 * ms / row["total_ms"] if row["total_ms"] > 0 else math.nan for ms in values])
 
 
+PAPERS = {"fastlsm": "FastLSM", "octree": "octree", "meshless": "meshless"}
+
+
+def joined(words):
+    """With commas, and "and" before the last."""
+    return " and ".join([", ".join(words[:-1])] * (len(words) > 1) + words[-1:])
+
+
+def threads_text(count):
+    return f"{count} thread{'' if count == 1 else 's'}"
+
+
+def scenes_of(source):
+    """What tells a file's rows from another's, in words."""
+    papers = [PAPERS.get(paper, paper) for paper in dict.fromkeys(row["paper"] for row in source.rows) if paper]
+    text = f"scenes of the {joined(papers)} paper{'s' * (len(papers) > 1)}" if papers else "scenes of no paper"
+    threads = {row["threads"] for row in source.rows}
+    return text + (f", {threads_text(*threads)}" if len(threads) == 1 and threads != {1} else "")
+
+
+# What a table's note says of a column that all rows have alike.
+ALIKE = {"engine": str, "precision": lambda value: f"{value} precision", "threads": threads_text,
+         "w": lambda value: f"w {value}" if value != "–" else None, "check": lambda value: value if value == "VALID" else None}
+
+
 def measured(source):
     """A paper's rows: totals first, then stages and counts; the paper's beneath."""
     rows = [row for row in source.rows if "elastic" not in row]
     if not rows:
         return None
     names = stage_names(rows)
-    table = Table(f"Time of a step, {source.name}",
-                  ["scene", "total ms", "quartiles", "ns / particle / step", "faster than the paper", "check"]
+    table = Table(f"Time of a step: {scenes_of(source)}",
+                  ["scene", "total ms", "quartiles ms", "ns / particle / step", "times as fast as the paper", "check"]
                   + [name.replace("_", " ") + " ms" for name in names]
                   + ["particles", "regions", "w", "sums / region", "engine", "precision", "threads"],
-                  "Medians. The paper's values are those of its own processor.")
+                  f"Medians, of {source.name}. The paper's values are those of its own processor.")
     shown = []
     for row in rows:
         total, paper = row["total_ms"], row["paper_total_ms"]
@@ -74,7 +120,7 @@ def measured(source):
         if not row["valid"]:
             table.add([row["scene"]] + ["–"] * 4 + [check(row)] + ["–"] * len(names) + counts, "invalid")
             continue
-        faster = f"{number(paper / total)} times" if paper == paper and total > 0 else "–"
+        faster = number(paper / total) if paper == paper and total > 0 else "–"
         table.add([row["scene"], number(total), f"{number(row['total_low_ms'])} to {number(row['total_high_ms'])}",
                    number(row["ns_per_particle_step"]), faster, check(row)] + measured_times(row, names)
                   + counts)
@@ -85,7 +131,7 @@ def measured(source):
                               of_stages(row, "paper_stage_statuses", names, "")) + [""] * len(counts), "paper")
             shown += [row["paper_status"]] + row["paper_stage_statuses"]
     table.note += explain_marks(shown)
-    return table
+    return table.fold(ALIKE)
 
 
 def where(point, i):
@@ -106,30 +152,30 @@ def elastic(source):
     rows = [row for row in source.rows if "elastic" in row]
     if not rows:
         return None
-    table = Table(f"Meshless bodies, time of a frame, {source.name}",
+    table = Table(f"Time of a frame of meshless bodies: {scenes_of(source)}",
                   ["scene", "points", "nodes", "modes", "matrices s", "modes s", "motion ms", "skin ms", "frame ms",
-                   "the paper's frame ms", "faster than the paper", "check"],
-                  "Medians. The paper's frames are of its own processor and include the drawing of the points.")
+                   "the paper's frame ms", "times as fast as the paper", "check"],
+                  f"Medians, of {source.name}. The paper's frames are of its own processor and include the drawing of the points.")
     for row in rows:
         body, total, paper = row["elastic"], row["total_ms"], row["paper_total_ms"]
         counts = [row["scene"], number(row["particles"]), number(body["nodes"]), number(body["modes"])]
         if not row["valid"]:
             table.add(counts + ["–"] * 7 + [check(row)], "invalid")
             continue
-        beside = [number(paper), f"{number(paper / total)} times"] if paper == paper else ["–", "–"]
+        beside = [number(paper), number(paper / total)] if paper == paper else ["–", "–"]
         table.add(counts + [number(body["matrix_seconds"]), number(body["mode_seconds"])]
                   + measured_times(row, ["motion", "skin"]) + [number(total)] + beside + [check(row)])
-    return table
+    return table.fold(ALIKE)
 
 
 def changing(source):
     rows = [row for row in source.rows if row["change.frames"]]
     if not rows:
         return None
-    table = Table(f"While it changes, {source.name}",
+    table = Table(f"Bodies that change: {scenes_of(source)}",
                   ["scene", "frames", "with a change", "nodes", "added at once", "simulation ms", "resampling ms",
                    "splitting ms", "a surface ms", "triangles", "pieces", "open edges", "check"],
-                  "Simulation is a frame's before the first change and after the last; resampling is the median and "
+                  f"Of {source.name}. Simulation is a frame's before the first change and after the last; resampling is the median and "
                   "the most of frames that change.")
     for row in rows:
         c = {name[7:]: value for name, value in row.items() if name.startswith("change.")}
@@ -141,7 +187,7 @@ def changing(source):
                       number(c["surface_ms"])])
                   + [f"{number(c['first_triangles'])} to {number(c['last_triangles'])}", c["pieces"], c["open_edges"],
                      check(row)], "" if row["valid"] else "invalid")
-    return table
+    return table.fold(ALIKE)
 
 
 def text_of(value):
@@ -157,8 +203,8 @@ def everything(source):
     rows = [row for row in source.rows if row["valid"]]
     if not rows or not source.meanings:
         return None
-    table = Table(f"All that was stored, {source.name}", ["quantity", "unit"] + [row["scene"] for row in rows]
-                  + ["what it is"], folded=True)
+    table = Table(f"All that was stored: {scenes_of(source)}", ["quantity", "unit"] + [row["scene"] for row in rows]
+                  + ["what it is"], f"Of {source.name}.", folded=True)
     for name, (meaning, unit) in source.meanings.items():
         group, _, own = name.rpartition("/")
         values = [text_of((row.get(group, {}) if group else row).get(own)) for row in rows]

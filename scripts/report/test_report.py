@@ -25,7 +25,10 @@ except ImportError as missing:
     print(f"skipped: {missing}; scripts/setup run installs it")
     sys.exit(77)
 
+import claim_figures  # noqa: E402
 import draft  # noqa: E402
+import drawing  # noqa: E402
+import headline  # noqa: E402
 import main  # noqa: E402
 import sources  # noqa: E402
 import tables  # noqa: E402
@@ -42,15 +45,15 @@ class Page(html.parser.HTMLParser):
     def __init__(self, text):
         super().__init__()
         self.open, self.wordless, self.addresses, self.text, self.figures = [], 0, [], "", 0
-        self.scripts = []
+        self.scripts, self.buttons = [], []
         self.feed(text)
         self.close()
 
     def handle_starttag(self, tag, attributes):
         values = dict(attributes)
         self.figures += tag == "figure"
-        if tag == "script":
-            self.scripts.append("")
+        if tag in ("script", "button"):
+            (self.scripts if tag == "script" else self.buttons).append("")
         self.addresses += [values[name] for name in ("href", "src") if name in values]
         if tag == "svg" and not values.get("aria-label") or tag == "img" and not values.get("alt"):
             self.wordless += 1
@@ -68,6 +71,8 @@ class Page(html.parser.HTMLParser):
         if self.open and self.open[-1] == "script":
             self.scripts[-1] += data
         else:
+            if "button" in self.open:
+                self.buttons[-1] += data
             self.text += data
 
 
@@ -164,6 +169,71 @@ class Report(unittest.TestCase):
         self.assertIn("BUSY: other programs took the processors", text)
         self.assertIn("left no undisturbed time to", text)
 
+    def test_the_headline_is_made_of_the_rows(self):
+        def two(file):
+            file.copy("rows/000", "rows/001")
+            file.copy("rows/000", "rows/002")
+            for n, scene, ms in ((0, b"slow", 2.0), (1, b"fast", 0.5), (2, b"hearsay", 0.1)):
+                row = file[f"rows/00{n}"].attrs
+                row["scene"], row["total_ms"], row["paper_total_ms"], row["paper_total_status"] = scene, ms, 10.0, b"quoted"
+            file["rows/002"].attrs["paper_total_status"] = b"second-hand"
+            file["machine"].attrs["cpu"] = b"Abacus"
+
+        words = " ".join(self.page(self.copy("two.h5", two)).text.split())
+        self.assertIn("Speed FastLSM: a step is 5.00 times (slow) to 20.0 times (fast) as fast as the paper's figure, on 1 thread. "
+                      "Such factors are of machines too, and not of programs alone: Abacus here, there a Pentium 4", words)
+        self.assertIn("Checks 3 rows were measured; each was checked on the very scene timed: all are VALID.", words)
+        self.assertNotIn("Claims", words)
+
+    def test_the_headline_counts_the_verdicts(self):
+        def claim(name, verdict, value, kind="method"):
+            return {"kind": kind, "paper": "mine", "name": name, "verdict": verdict, "count": 1, "values": 1,
+                    "measured": [value], "paper_value": [1.0]}
+
+        source = mock.Mock(claims=[claim("a", "reproduced", 9.0), claim("b", "differs", 0.25), claim("c", "differs", 3.0),
+                                   claim("d", "undecided", 2.0), claim("e", "differs", 1.5), claim("f", "measured", 99.0, "machine")])
+        self.assertEqual(list(headline.claims(source)), [
+            "Of 5 claims of method 1 are undecided, 1 are reproduced and 3 differ. Farthest off: mine b, 0.250 where the paper has "
+            "1.00; mine c, 3.00 where the paper has 1.00; mine d, 2.00 where the paper has 1.00."])
+
+    def test_a_card_has_its_picture_where_there_is_one(self):
+        def name(file):
+            file.copy("rows/000", "rows/001")
+            file["rows/001"].attrs["scene"] = b"../scenes/penguin"
+
+        page = self.page(self.copy("cards.h5", name))
+        pictures = [address for address in page.addresses if address.startswith("data:image/webp")]
+        with open(os.path.join(SOURCES, "results", "scenes", "penguin.webp"), "rb") as file:
+            self.assertEqual([base64.b64decode(address.split(",")[1]) for address in pictures], [file.read()])
+        self.assertEqual(page.buttons, ["penguin", "../scenes/penguin"])
+
+    def test_words_of_curves_and_axes(self):
+        curve = {"y_name": "most_summation", "exponent": 2.0, "exponent_low": 1.0, "exponent_high": 3.0}
+        self.assertEqual(claim_figures.label("regions.hand-whole.most_summation.asymmetric.n1-8.4", curve),
+                         "hand whole, not made symmetric")
+        self.assertEqual(claim_figures.label("smoothing.w3.profile", curve), "w = 3")
+        self.assertEqual(claim_figures.label("size.octree.sums.n10-33.6", curve),
+                         "octree, the sums alone: power 2.00 (1.00 to 3.00)")
+        for name, text in (("sums, ms/step", "sums, milliseconds a step"), ("what_nobody-knows", "what nobody knows"),
+                           ("fast summation, ns/particle/step", "fast summation, nanoseconds a particle and step")):
+            self.assertEqual(claim_figures.words(name), text)
+
+    def test_logarithmic_axes_have_numbers(self):
+        """Two labels at least that stand in the picture, and no powers where plain numbers do."""
+        for low, high in ((0.22, 4.5), (3, 11), (1.5, 2.1), (0.02, 900), (4e4, 3e6)):
+            figure, axes = drawing.canvas()
+            axes.plot([low, high], [low, high])
+            axes.set_xscale("log")
+            drawing.label_logarithms(figure)
+            figure.draw_without_rendering()
+            left, right = axes.get_xlim()
+            shown = [label.get_text() for minor in (False, True) for label in axes.get_xticklabels(minor=minor)
+                     if label.get_text() and left <= label.get_position()[0] <= right]
+            drawing.pyplot.close(figure)
+            self.assertGreaterEqual(len(shown), 2, (low, high))
+            for text in shown:
+                self.assertRegex(text, r"^[\d.,]+$")
+
     def test_a_calibration_says_what_it_found(self):
         path = self.at("beam.h5")
         with open(self.at("box.obj"), "w", encoding="utf-8") as file:
@@ -179,7 +249,7 @@ class Report(unittest.TestCase):
         with h5py.File(path, "r+") as file:
             for n in (1, 2, 3):
                 self.assertIn(file["laws"].attrs[f"found_{n}"].decode(), page.text)
-            self.assertIn(f"{file['specimens/young'][0]:.3g}", page.text)
+            self.assertIn(drawing.number(1e-6 * float(file["specimens/young"][0])), page.text)
             self.assertEqual(page.figures, 3)
             file["specimens/valid"][0], file["specimens/young"][0] = 0, float("nan")
             del file.attrs["checksum"]
@@ -192,9 +262,9 @@ class Report(unittest.TestCase):
         rows = sources.read(self.rows).rows
         self.assertAlmostEqual(rows[0]["paper_ns"], 0.28e6 / 150)
         table = tables.measured(sources.read(self.rows))
-        at = table.headings.index("damping ms")
         ours, paper = (cells for _, cells in table.lines)
-        self.assertEqual((ours[at], paper[at], paper[3]), ("–", "–", "1,867"))
+        self.assertEqual((ours[0], paper[3]), ("penguin", "1,867"))
+        self.assertNotIn("damping ms", table.headings)
 
         def silent(file):
             for name in ("paper_particles", "paper_stage_percent"):
@@ -203,6 +273,27 @@ class Report(unittest.TestCase):
         old = tables.measured(sources.read(self.copy("old.h5", silent)))
         paper = old.lines[1][1]
         self.assertEqual((paper[3], paper[old.headings.index("polar ms")]), ("–", "0.100"))
+
+    def test_what_all_rows_have_alike_is_said_above_them(self):
+        table = tables.measured(sources.read(self.rows))
+        for heading in ("engine", "precision", "threads", "w", "check", "sums / region"):
+            self.assertNotIn(heading, table.headings)
+        self.assertTrue(table.note.endswith("All: fastlsm, single precision, 1 thread, w 2, VALID."), table.note)
+
+        def differ(file):
+            file.copy("rows/000", "rows/001")
+            row = file["rows/001"].attrs
+            row["threads"], row["valid"], row["reason"] = 2, 0, b"goals are off"
+
+        table = tables.measured(sources.read(self.copy("differ.h5", differ)))
+        self.assertEqual([cells[table.headings.index("threads")] for kind, cells in table.lines if kind != "paper"], [1, 2])
+        self.assertIn("check", table.headings)
+        self.assertTrue(table.note.endswith("All: fastlsm, single precision, w 2."), table.note)
+        self.assertEqual({len(cells) for _, cells in table.lines}, {len(table.headings)})
+
+    def test_numbers_are_told_from_words(self):
+        self.assertEqual([tables.class_of([text]) for text in ("0.0245 (-0.0647 to 0.114)", "12.0 / 26.0 /\n36.0*", "VALID",
+                                                               "at most 5.00% more than theirs")], ["", "", "word", "text"])
 
     def test_doubtful_values_of_a_paper_keep_their_marks(self):
         def doubt(file):
@@ -241,8 +332,8 @@ class Report(unittest.TestCase):
         done = shapebench("claims", "--claims", self.at("kinds.cfg"), "--paper", "mine", "--quick", "-o", self.at("k.h5"))
         self.assertEqual(done.returncode, 0, done.stderr)
         page = self.page(self.at("k.h5"))
-        for words in ("1 machine (measured 1); 1 by construction (as set 1).", "Machine: claims, k.h5", "times as fast",
-                      "By construction: claims, k.h5", "not set /curves/polar.warm-sweeps"):
+        for words in ("1 machine (measured 1); 1 by construction (as set 1).", "Machine: claims", "times as fast",
+                      "By construction: claims", "Of k.h5.", "not set /curves/polar.warm-sweeps"):
             self.assertIn(words, page.text)
         self.assertNotIn("Method: claims", page.text)
         with h5py.File(self.at("k.h5"), "r+") as file:
@@ -275,7 +366,8 @@ class Report(unittest.TestCase):
 
         page = self.page(self.rows, self.copy("b.h5", slower))
         self.assertIn("A scene from file to file", page.text)
-        self.assertIn("Side by side: A is rows.h5, B is b.h5", page.text)
+        self.assertIn("Side by side: the oldest file and the newest", page.text)
+        self.assertRegex(page.text, r"A: rows.h5 \(.*\)\. B: b.h5 \(")
         self.assertIn("(1.250 times; quartiles", page.text)
         self.assertIn("b.h5", page.text)
 
@@ -305,7 +397,7 @@ class Report(unittest.TestCase):
                                 r"\(1\.\d+ to 1\.\d+, p 0.002\); there the kernel changed\.")
         self.assertRegex(words, r"From day07.h5 .{,40} on the kernel is Linux 99, before ")
         self.assertIn("11 files whose scenes newer ones have are shown here alone.", words)
-        self.assertIn("Side by side: A is day01.h5, B is day12.h5", words)
+        self.assertRegex(words, r"A: day01.h5 \([^)]*\)\. B: day12.h5 \(")
         self.assertRegex(words, r"penguintotal[\d.]+ to [\d.]+%too few samples")
         data = next(base64.b64decode(address.split(",")[1]).decode() for address in page.addresses
                     if address.startswith("data:text/csv") and b"machine_changed" in base64.b64decode(address.split(",")[1]))
@@ -357,21 +449,23 @@ class Report(unittest.TestCase):
         self.assertLess(len(picture), 20000)
 
     def test_the_live_page_is_in_it(self):
-        """Once, beside the tables of its scenes; --no-page leaves it out, and where it is not there a line says so."""
+        """Once, and a button for each scene; --no-page leaves it out, and where it is not there a line says so."""
         page = self.page(self.rows, self.rows)
         with open(os.path.join(SOURCES, "results", "page.html"), "rb") as file:
             self.assertEqual(gzip.decompress(base64.b64decode(page.scripts[0])), file.read())
         self.assertEqual(len(page.scripts), 2)
-        self.assertRegex(page.text, r"it runs in this page, [^\n]*\n\s*penguin \n")
+        self.assertIn("it runs in this page", page.text)
+        self.assertEqual(page.buttons, ["penguin"])
         done = shapebench("report", "--no-page", "-o", self.at("small.html"), self.rows)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         with open(self.at("small.html"), encoding="utf-8") as file:
             small = Page(file.read())
-        self.assertEqual((small.scripts, "it runs in this page" in small.text), ([], False))
+        self.assertEqual((small.scripts, small.buttons, "it runs in this page" in small.text), ([], [], False))
+        self.assertEqual(len([address for address in small.addresses if address.startswith("data:image/webp")]), 1)
 
-        part = main.Part("measured", "Measured", scenes=["penguin"])
+        part = main.Part("scenes", "Scenes", cards=[main.live.Card("penguin")])
         options = mock.Mock(no_page=False)
-        with mock.patch("main.live.PLACES", (self.at("no.html"),)), mock.patch("sys.stderr", io.StringIO()) as said:
+        with mock.patch("main.live.FOLDERS", (self.at("none"),)), mock.patch("sys.stderr", io.StringIO()) as said:
             self.assertIsNone(main.find_page(options, [part]))
         self.assertRegex(said.getvalue(), "^shapebench report: there is no page.html, .*\n$")
 

@@ -150,7 +150,7 @@ shapebench.advance(values[0]);
 const { width, height } = document.getElementById('canvas');
 window.filmed ??= Object.assign(document.createElement('canvas'), { width, height });
 shapebench.copyViews(window.filmed);
-return window.filmed.toDataURL(values[1], 0.8).split(',')[1];
+return window.filmed.toDataURL(values[1], 0.6).split(',')[1];
 """
 
 

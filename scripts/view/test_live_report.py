@@ -1,4 +1,4 @@
-"""The page inside a report: opened by the buttons beside the tables."""
+"""A report in a browser: its cards open the page in it, and it fits its window."""
 import pathlib
 import subprocess
 import tempfile
@@ -27,12 +27,44 @@ class LiveReport(PageCase):
         subprocess.run([PROGRAM, "report", rows, "--quiet", "-o", report], check=True)
         self.driver.get(report.as_uri())
         names, text, moved, said = self.ask(PRESS)
-        self.assertEqual(names[0], "penguin")
+        self.assertEqual(names, ["penguin", "mine"])
         self.assertIn('mesh = "shape:penguin"', text)
         self.assertGreater(moved, 0.01)
         self.assertEqual(said[0], "")
         self.assertIn("is not built in", said[1])
 
+
+    def test_it_fits_its_window(self):
+        """At either width nothing but tables and figures scrolls sideways, in their boxes; at the wider no table must."""
+        report = self.folder / "report.html"
+        subprocess.run([PROGRAM, "report", "--no-page", *PUBLISHED, "--quiet", "-o", report], check=True)
+        self.addCleanup(self.driver.execute_cdp_cmd, "Emulation.clearDeviceMetricsOverride", {})
+        for width in (1400, 390):
+            self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
+                "width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width < 500})
+            self.driver.get(report.as_uri())
+            whole, window, tables, wrapped = self.ask(FIT)
+            self.assertEqual((whole, window), (width, width))
+            self.assertEqual(wrapped, [])
+            if width == 1400:
+                self.assertEqual(tables, [])
+
+
+HERE = pathlib.Path(__file__).resolve().parent
+PUBLISHED = sorted((HERE.parent.parent / "results" / "published").glob("*.h5"))
+
+# How wide the page and its window are, which tables are wider than their boxes, and which numbers are on two lines.
+FIT = """
+const root = document.documentElement;
+const wide = [...document.querySelectorAll('.wide')].filter((box) => !box.closest('details') && box.scrollWidth > box.clientWidth);
+const numbers = [...document.querySelectorAll('.wide td:not([class])')].filter((cell) => !cell.textContent.includes('\\n'));
+const broken = numbers.filter((cell) => {
+    const range = document.createRange();
+    range.selectNodeContents(cell);
+    return new Set([...range.getClientRects()].map((box) => Math.round(box.top))).size > 1;
+});
+return [root.scrollWidth, innerWidth, wide.map((box) => box.getAttribute('aria-label')), broken.map((cell) => cell.textContent)];
+"""
 
 # Presses each button; what the page has then, how far it moves, and what is said.
 PRESS = """
