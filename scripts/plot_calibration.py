@@ -134,7 +134,7 @@ def collapse(axes, plan, specimen, law):
     axes.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
     axes.minorticks_off()
     axes.set_xlabel("w (w + 1) (spacing / thickness)²")
-    axes.set_ylabel("E / (ρ (spacing / step)² w (w + 1))")
+    axes.set_ylabel("Young's modulus / (density (spacing / step)² w (w + 1))")
     legend_below(axes, 2)
 
 

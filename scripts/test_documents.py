@@ -26,7 +26,7 @@ ELSEWHERE = {
     r"scripts/run regress --baseline": "bench/regress/test_regress.c; a stored file wants a quiet machine",
     r"scripts/run kernels.*(setup|oct-|resampling)": "bench/kernels/test_kernels.c",
     r"for |scripts/render.py .*\{": "whoever makes the pictures anew; scripts/test_render.sh",
-    r"scripts/publish|scripts/test|scripts/setup": "CI, or whoever publishes",
+    r"scripts/publish|scripts/view/pictures|scripts/test|scripts/setup": "CI, or whoever publishes",
     r"mpirun": "bench/campaign/test_campaign.c",
     r"scripts/check_step.py|scripts/brute_force.py": "scripts/test_brute_force.py, bench/play/test_step_record.c",
     r"scripts/check_|scripts/readme.py": "by hand",

@@ -17,7 +17,9 @@ for script in check_step.py render.py plots.py plot_calibration.py plot_slice.py
     cmp -s "$here/$script" "$prefix/share/shapebench/$script" ||
         { echo "not installed: $script"; exit 1; }
 done
-cmp -s "$here/../results/page.html" "$prefix/share/shapebench/page.html" || { echo "not installed: page.html"; exit 1; }
+for file in page.html scenes/penguin.webp; do
+    cmp -s "$here/../results/$file" "$prefix/share/shapebench/$file" || { echo "not installed: $file"; exit 1; }
+done
 
 # One header, its functions and no others.
 headers=$(cd "$prefix/include" && find . -type f)

@@ -38,7 +38,7 @@ GROUPS = {
     "breaking": ("Cost of breaking links", "FastLSM section 5: what a broken link costs, against the size of the body.", "xy"),
 }
 
-# Words for the parts of curves' names and the fields that axes are named by; of others "_" and "-" become spaces.
+# Words for the parts of curves' names and the fields that axes are named by; of others "_" becomes a space.
 WORDS = {
     "fast": "fast sums", "naive": "added one by one", "bars": "bars alone", "lists": "from lists", "blocks": "in blocks",
     "sums": "the sums alone", "resolution": "one body, finer and finer", "step": "whole step",
@@ -137,7 +137,7 @@ def words(name):
         return WORDS[name]
     for unit, text in UNITS.items():
         name = name.replace(unit, text)
-    name = re.sub(r"[_|]|(?<=[a-z])-(?=[a-z])", " ", name).replace("/", " and ")
+    name = re.sub(r"[_|]", " ", name).replace("/", " and ")
     return re.sub(r"^w(\d+)$", r"w = \1", name)
 
 

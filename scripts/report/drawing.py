@@ -32,8 +32,12 @@ matplotlib.rcParams.update({
 
 
 def lighter(svg):
-    """The same picture in half the bytes: hundredths of a point, no comments, no names that nothing uses."""
+    """The same picture in half the bytes: hundredths of a point, the font named once, no comments, no turns by nothing, no
+    names that nothing uses."""
     text = re.sub(r"<!--.*?-->|<metadata>.*?</metadata>", "", svg.decode(), flags=re.DOTALL)
+    text = re.sub(r' transform="rotate\(-0 [^"]*\)"', "", text)
+    text = re.sub(r"font: ([\d.]+px) 'DejaVu Sans', 'Verdana', sans-serif", r"font-size: \1", text)
+    text = text.replace("<svg ", '<svg font-family="DejaVu Sans, Verdana, sans-serif" ', 1)
     used = set(re.findall(r"#([\w-]+)", text))
 
     def tag(match):

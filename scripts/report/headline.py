@@ -67,14 +67,18 @@ def far(claim):
     return abs(math.log(claim["measured"][0] / claim["paper_value"][0]))
 
 
+def counted(count, verdict):
+    one = verdict if verdict == "differs" else f"is {verdict}"
+    return f"{count} {one if count == 1 else one.replace('is ', 'are ').replace('differs', 'differ')}"
+
+
 def claims(source):
     """How many of the method's claims have which verdict, and which are farthest from the paper."""
     method = [claim for claim in source.claims if claim["kind"] == "method"]
     if not method:
         return
     verdicts = [claim["verdict"] for claim in method]
-    words = {verdict: "differ" if verdict == "differs" else f"are {verdict}" for verdict in verdicts}
-    told = [f"{verdicts.count(verdict)} {words[verdict]}" for verdict in sorted(words, reverse=True)]
+    told = [counted(verdicts.count(verdict), verdict) for verdict in sorted(set(verdicts), reverse=True)]
     apart = sorted((claim for claim in method if claim["verdict"] != "reproduced" and far(claim)), key=far)[:-FARTHEST - 1:-1]
     which = [f"{claim['paper']} {claim['name']}, {number(claim['measured'][0])} where the paper has "
              f"{number(claim['paper_value'][0])}" for claim in apart]

@@ -109,7 +109,7 @@ def compose(program, files):
     if past:
         files = [source for source in files if source not in history.superseded(past)]
     parts = [scenes_part(files), measured_part(files), history_part(program, past), claims_part(files), sweeps_part(files),
-             calibrations_part(files), Part("environment", "Where and how", tables=[tables.environment(files)])]
+             calibrations_part(files), Part("environment", "Where and how", tables=tables.environment(files))]
     return headline.found(program, files, past), [part for part in parts if part]
 
 
@@ -230,7 +230,7 @@ def parse():
                         help="a page NAME.html, or a folder (default: %(default)s)")
     parser.add_argument("--overwrite", action="store_true", help="replace a page or report that is there")
     parser.add_argument("--title", default="shapebench report")
-    parser.add_argument("--no-page", action="store_true", help="leave out the live page, a megabyte")
+    parser.add_argument("--no-page", action="store_true", help="leave out the live page, 2.5 MB")
     parser.add_argument("--program", default="shapebench", help="which compares files (default: %(default)s)")
     parser.add_argument("--quiet", action="store_true")
     return parser.parse_args()

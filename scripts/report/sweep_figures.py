@@ -7,20 +7,20 @@ from tables import Table, where
 
 import plot_sweep
 
-# dataset, factor, file name, title, logarithmic, caption
+# dataset, factor, file name, title, unit, logarithmic, caption
 MAPS = [
-    ("total_ms", 1, "cost", "Milliseconds of a step", True, "Checked and timed; grey: not measured or INVALID."),
-    ("path_rms", 100, "deviation", "Path off, percent of the body's size", False,
+    ("total_ms", 1, "cost", "Milliseconds of a step", "milliseconds", True, "Checked and timed; grey: not measured or INVALID."),
+    ("path_rms", 100, "deviation", "Path off, percent of the body's size", "percent", False,
      "How far the surface moves from that of a lattice of all finest cells with regions as wide on average; root mean "
      "square of all frames."),
-    ("goal_rms", 1, "goals", "Goals off, finest cells", False,
+    ("goal_rms", 1, "goals", "Goals off, finest cells", "cells", False,
      "Root mean square of goal positions from those of epsilon 0 in the same state."),
-    ("frequency", 1, "frequency", "First natural frequency of a clamped beam, Hz", True,
+    ("frequency", 1, "frequency", "First natural frequency of a clamped beam, Hz", "hertz", True,
      "The stiffness that w and epsilon give, on a beam of regular cells."),
-    ("sag", 100, "sag", "Sag of a clamped beam's tip, percent of its length", True, "In the limit of small sags."),
-    ("summation_nodes", 1, "summation", "Summation nodes of a region", True, "Mean; a lattice has none."),
-    ("bytes", 1e-6, "memory", "Memory, megabytes", True, "Held by the engine."),
-    ("build_seconds", 1e3, "build", "Set-up, milliseconds", True, "Engine built from voxels."),
+    ("sag", 100, "sag", "Sag of a clamped beam's tip, percent of its length", "percent", True, "In the limit of small sags."),
+    ("summation_nodes", 1, "summation", "Summation nodes of a region", "nodes", True, "Mean; a lattice has none."),
+    ("bytes", 1e-6, "memory", "Memory, megabytes", "megabytes", True, "Held by the engine."),
+    ("build_seconds", 1e3, "build", "Set-up, milliseconds", "milliseconds", True, "Engine built from voxels."),
 ]
 
 
@@ -29,7 +29,7 @@ def listed(point, values):
             for i in range(len(values))]
 
 
-def heat_map(source, name, factor, file_name, title, logarithmic, caption):
+def heat_map(source, name, factor, file_name, title, unit, logarithmic, caption):
     point = source.point
     values = factor * np.array(point[name], dtype=float)
     known = np.flatnonzero(np.isfinite(values))
@@ -38,6 +38,7 @@ def heat_map(source, name, factor, file_name, title, logarithmic, caption):
     figure, axes = canvas(1.1 + 0.3 * len(np.unique(point["w"])))
     axes.grid(visible=False)
     plot_sweep.heat_map(axes, source.plan, point, values, "", logarithmic)
+    figure.axes[-1].set_ylabel(unit)  # of the colours
     least, most = known[np.argmin(values[known])], known[np.argmax(values[known])]
     words = (f"Heat map over w and epsilon of {len(known)} points: from {number(values[least])} at {where(point, least)} "
              f"to {number(values[most])} at {where(point, most)}.")

@@ -221,14 +221,23 @@ ENVIRONMENT = [("cpu", "processor"), ("cores", "cores"), ("threads", "threads"),
 
 
 def environment(sources):
-    """What wrote each file; what all share is one cell."""
-    table = Table("Where these were measured", [""] + [source.name for source in sources])
+    """What wrote the files: what all share, and then what is each file's own."""
+    def value(source, name):
+        value = source.machine.get(name, "unknown")
+        return ("yes" if value else "no") if name == "git_dirty" else f"{value:,}" if isinstance(value, int) else value
+
+    shared = Table("Where these were measured", ["", "all files" if len(sources) > 1 else sources[0].name])
+    own = {}
     for name, title in ENVIRONMENT:
-        values = [source.machine.get(name, "unknown") for source in sources]
-        if name == "git_dirty":
-            values = ["yes" if value else "no" for value in values]
-        table.add([title] + [f"{value:,}" if isinstance(value, int) else value for value in values])
-    return table
+        values = [value(source, name) for source in sources]
+        if len(set(values)) == 1:
+            shared.add([title, values[0]])
+        else:
+            own[title] = values
+    differ = Table("What each file has of its own", ["file", *own])
+    for i, source in enumerate(sources):
+        differ.add([source.name, *(values[i] for values in own.values())])
+    return [shared, differ] if own else [shared]
 
 
 def all_tables(sources):

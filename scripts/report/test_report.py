@@ -193,7 +193,7 @@ class Report(unittest.TestCase):
         source = mock.Mock(claims=[claim("a", "reproduced", 9.0), claim("b", "differs", 0.25), claim("c", "differs", 3.0),
                                    claim("d", "undecided", 2.0), claim("e", "differs", 1.5), claim("f", "measured", 99.0, "machine")])
         self.assertEqual(list(headline.claims(source)), [
-            "Of 5 claims of method 1 are undecided, 1 are reproduced and 3 differ. Farthest off: mine b, 0.250 where the paper has "
+            "Of 5 claims of method 1 is undecided, 1 is reproduced and 3 differ. Farthest off: mine b, 0.250 where the paper has "
             "1.00; mine c, 3.00 where the paper has 1.00; mine d, 2.00 where the paper has 1.00."])
 
     def test_a_card_has_its_picture_where_there_is_one(self):
@@ -210,11 +210,11 @@ class Report(unittest.TestCase):
     def test_words_of_curves_and_axes(self):
         curve = {"y_name": "most_summation", "exponent": 2.0, "exponent_low": 1.0, "exponent_high": 3.0}
         self.assertEqual(claim_figures.label("regions.hand-whole.most_summation.asymmetric.n1-8.4", curve),
-                         "hand whole, not made symmetric")
+                         "hand-whole, not made symmetric")
         self.assertEqual(claim_figures.label("smoothing.w3.profile", curve), "w = 3")
         self.assertEqual(claim_figures.label("size.octree.sums.n10-33.6", curve),
                          "octree, the sums alone: power 2.00 (1.00 to 3.00)")
-        for name, text in (("sums, ms/step", "sums, milliseconds a step"), ("what_nobody-knows", "what nobody knows"),
+        for name, text in (("sums, ms/step", "sums, milliseconds a step"), ("what_nobody_knows", "what nobody knows"),
                            ("fast summation, ns/particle/step", "fast summation, nanoseconds a particle and step")):
             self.assertEqual(claim_figures.words(name), text)
 
