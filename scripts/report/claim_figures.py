@@ -54,8 +54,8 @@ WORDS = {
     "additions by the paper's": "additions, times the paper's", "tip's sag, mesh units": "sag of the tip at rest, mesh units",
 }
 UNITS = {"ns/": "nanoseconds a ", "us/": "microseconds a ", "ms/": "milliseconds a "}
-CLASSES = {"reproduced": "good", "not reproduced": "bad", "not as set": "bad", "undecided": "open", "differs": "open", "BUSY": "open",
-           "INVALID": "invalid"}
+CLASSES = {"reproduced": "good", "not reproduced": "bad", "not as set": "bad", "undecided": "open", "differs": "open",
+           "BUSY": "open", "INVALID": "invalid"}
 
 
 def value_text(values):

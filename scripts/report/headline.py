@@ -9,7 +9,7 @@ from tables import PAPERS, joined, threads_text
 
 MACHINES = {"fastlsm": "a Pentium 4 at 3.4 GHz in 2007", "octree": "a Pentium 4 at 3.4 GHz in 2008",
             "meshless": "two Xeons at 2.8 GHz in 2009"}  # as the papers say
-FARTHEST = 3  # claims that are named
+NAMED = 3  # of many claims and changes these are named
 
 
 def validity(rows):
@@ -79,7 +79,7 @@ def claims(source):
         return
     verdicts = [claim["verdict"] for claim in method]
     told = [counted(verdicts.count(verdict), verdict) for verdict in sorted(set(verdicts), reverse=True)]
-    apart = sorted((claim for claim in method if claim["verdict"] != "reproduced" and far(claim)), key=far)[:-FARTHEST - 1:-1]
+    apart = sorted((claim for claim in method if claim["verdict"] != "reproduced" and far(claim)), key=far)[:-NAMED - 1:-1]
     which = [f"{claim['paper']} {claim['name']}, {number(claim['measured'][0])} where the paper has "
              f"{number(claim['paper_value'][0])}" for claim in apart]
     yield (f"Of {len(method)} claim{'s' * (len(method) > 1)} of method {joined(told)}"
@@ -87,8 +87,11 @@ def claims(source):
 
 
 def recommendations(program, source):
-    """What the program itself recommends of a sweep."""
-    done = subprocess.run([program, "sweep", source.path, "--recommend"], capture_output=True, text=True)
+    """What the program itself recommends of a sweep; nothing where it is not there."""
+    try:
+        done = subprocess.run([program, "sweep", source.path, "--recommend"], capture_output=True, text=True)
+    except OSError:
+        return
     for engine, wish, point in re.findall(r"^(\w+): (.*?) ?take (w .*? a step)\b", done.stdout, re.MULTILINE):
         yield f"{named(engine)} of {source.plan['scene']}, {wish}: {point.replace(': ', ', ')}."
 
@@ -99,7 +102,8 @@ def found(program, files, past):
     told = {("measured", "Speed"): speeds(files), ("measured", "Checks"): validity(rows) if rows else ()}
     if past:
         changes = [change + "." for change in history.changes(past)] or list(history.sentences(past))[:1]
-        told["history", "History"] = changes[:FARTHEST]
+        more = [f"{len(changes) - NAMED} more changes are below."] if len(changes) > NAMED + 1 else changes[NAMED:]
+        told["history", "History"] = changes[:NAMED] + more
     told["claims", "Claims"] = (text for source in files for text in claims(source))
     told["sweeps", "w and epsilon"] = (text for source in files if source.point for text in recommendations(program, source))
     told["calibrations", "Elasticity"] = (source.found[0].split(", those ")[0].rstrip(".") + "."

@@ -122,6 +122,7 @@ def name_files(axes, sources):
              for s in sources]
     axes.set_xticks(range(0, len(sources), every), texts[::every], fontsize=8 if many else 9,
                     rotation=90 if many else 0)
+    axes.set_xlabel("commit and day, the oldest first" if many else "file, commit and time, the oldest first")
 
 
 def figure(found):

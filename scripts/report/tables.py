@@ -155,7 +155,8 @@ def elastic(source):
     table = Table(f"Time of a frame of meshless bodies: {scenes_of(source)}",
                   ["scene", "points", "nodes", "modes", "matrices s", "modes s", "motion ms", "skin ms", "frame ms",
                    "the paper's frame ms", "times as fast as the paper", "check"],
-                  f"Medians, of {source.name}. The paper's frames are of its own processor and include the drawing of the points.")
+                  f"Medians, of {source.name}. The paper's frames are of its own processor and include the drawing of the "
+                  "points.")
     for row in rows:
         body, total, paper = row["elastic"], row["total_ms"], row["paper_total_ms"]
         counts = [row["scene"], number(row["particles"]), number(body["nodes"]), number(body["modes"])]
@@ -175,8 +176,8 @@ def changing(source):
     table = Table(f"Bodies that change: {scenes_of(source)}",
                   ["scene", "frames", "with a change", "nodes", "added at once", "simulation ms", "resampling ms",
                    "splitting ms", "a surface ms", "triangles", "pieces", "open edges", "check"],
-                  f"Of {source.name}. Simulation is a frame's before the first change and after the last; resampling is the median and "
-                  "the most of frames that change.")
+                  f"Of {source.name}. Simulation is a frame's before the first change and after the last; resampling is the "
+                  "median and the most of frames that change.")
     for row in rows:
         c = {name[7:]: value for name, value in row.items() if name.startswith("change.")}
         table.add([row["scene"], c["frames"], c["changed"], f"{number(c['first_nodes'])} to {number(c['most_nodes'])}",

@@ -190,8 +190,9 @@ class Report(unittest.TestCase):
             return {"kind": kind, "paper": "mine", "name": name, "verdict": verdict, "count": 1, "values": 1,
                     "measured": [value], "paper_value": [1.0]}
 
-        source = mock.Mock(claims=[claim("a", "reproduced", 9.0), claim("b", "differs", 0.25), claim("c", "differs", 3.0),
-                                   claim("d", "undecided", 2.0), claim("e", "differs", 1.5), claim("f", "measured", 99.0, "machine")])
+        source = mock.Mock(claims=[
+            claim("a", "reproduced", 9.0), claim("b", "differs", 0.25), claim("c", "differs", 3.0),
+            claim("d", "undecided", 2.0), claim("e", "differs", 1.5), claim("f", "measured", 99.0, "machine")])
         self.assertEqual(list(headline.claims(source)), [
             "Of 5 claims of method 1 is undecided, 1 is reproduced and 3 differ. Farthest off: mine b, 0.250 where the paper has "
             "1.00; mine c, 3.00 where the paper has 1.00; mine d, 2.00 where the paper has 1.00."])
@@ -233,6 +234,7 @@ class Report(unittest.TestCase):
             self.assertGreaterEqual(len(shown), 2, (low, high))
             for text in shown:
                 self.assertRegex(text, r"^[\d.,]+$")
+        self.assertEqual((drawing.power(2e8), drawing.power(1e-7), drawing.plain(1200.0)), ("2·10$^{8}$", "10$^{-7}$", "1,200"))
 
     def test_a_calibration_says_what_it_found(self):
         path = self.at("beam.h5")
@@ -395,6 +397,7 @@ class Report(unittest.TestCase):
         words = " ".join(page.text.split())
         self.assertRegex(words, r"penguin is slower from day07.h5 \(2026-03-07, 0000000007\+?\) on: 1.2[45]\d times "
                                 r"\(1\.\d+ to 1\.\d+, p 0.002\); there the kernel changed\.")
+        self.assertIn("History penguin is slower from day07.h5", words)
         self.assertRegex(words, r"From day07.h5 .{,40} on the kernel is Linux 99, before ")
         self.assertIn("11 files whose scenes newer ones have are shown here alone.", words)
         self.assertRegex(words, r"A: day01.h5 \([^)]*\)\. B: day12.h5 \(")
