@@ -68,7 +68,7 @@ def modulus(axes, plan, specimen, law):
     wide = grid & (specimen["wide"] != 0)
     if wide.any() and not (specimen["wide"][grid] != 0).all():
         axes.axvspan(specimen["w"][wide].min() - 0.5, w[-1] + 0.5, color="0.93", zorder=-1)
-        axes.text(0.98, 0.02, "grey: regions wider than the beam is thick", ha="right", va="bottom", fontsize=8,
+        axes.text(0.98, 0.02, "grey: regions wider than the beam is thick", ha="right", va="bottom", fontsize=9,
                   color="0.35", transform=axes.transAxes)
     axes.set_xscale("log")
     axes.set_yscale("log")

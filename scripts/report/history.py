@@ -120,8 +120,7 @@ def name_files(axes, sources):
     many = len(sources) > 6
     texts = [f"{s.commit}\n{s.machine['utc'][:10]}" if many else f"{s.name}\n{s.commit}\n{s.machine['utc'][:16]}"
              for s in sources]
-    axes.set_xticks(range(0, len(sources), every), texts[::every], fontsize=8 if many else 9,
-                    rotation=90 if many else 0)
+    axes.set_xticks(range(0, len(sources), every), texts[::every], fontsize=9, rotation=90 if many else 0)
     axes.set_xlabel("commit and day, the oldest first" if many else "file, commit and time, the oldest first")
 
 
