@@ -104,6 +104,7 @@ void ref_foot_of(const RefShell *shell, const RefWarp *warp, const double theta[
     sum_parts(warp, shape, place, normal);
     ref_quadtree_cell(tree, tree->cell + ref_quadtree_at(tree, theta), middle, edge);
     double length = sqrt(sqrt(sm_dot(place[1], place[1]) * sm_dot(place[2], place[2])));
+    if (length == 0) return; /* functions that are constant there */
     find_foot((const double(*)[3])place, (const double(*)[3])normal, x, edge,
               2 * length * fmax(edge[0], edge[1]), o);
     *lift = o[2];

@@ -71,11 +71,14 @@ int ref_samples_shape(const RefNodes *nodes, RefBasis basis, double edge, const 
     return shape->count ? REF_MLS_PLANE_CONSTANT : 0;
 }
 
+/* Functions' values beyond this carry a place away with nodes far from it. */
+static const double MOST_VALUE = 2;
+
 void ref_samples_expand(const RefSamples *samples, long near, const double theta[2],
                         RefShape *shape)
 {
     const double *from = samples->theta[near];
-    double x = theta[0] - from[0], y = theta[1] - from[1];
+    double x = theta[0] - from[0], y = theta[1] - from[1], most = 0;
     long start = samples->start[near];
     shape->count = (int)(samples->start[near + 1] - start);
     for (int n = 0; n < shape->count; n++) {
@@ -86,6 +89,13 @@ void ref_samples_expand(const RefSamples *samples, long near, const double theta
         shape->gradient[n][0] = p[1] + x * p[3] + y * p[5];
         shape->gradient[n][1] = p[2] + y * p[4] + x * p[5];
         for (int m = 0; m < 3; m++) shape->second[n][m] = p[3 + m];
+        most = fmax(most, fabs(shape->value[n]));
+    }
+    if (most <= MOST_VALUE) return;
+    for (int n = 0; n < shape->count; n++) {
+        shape->value[n] = samples->part[start + n][0];
+        memset(shape->gradient[n], 0, sizeof shape->gradient[n]);
+        memset(shape->second[n], 0, sizeof shape->second[n]);
     }
 }
 
