@@ -480,17 +480,18 @@ static void engine_step(SmEngine *e, SmLaps *laps)
     sm_lap(laps, SM_OTHER);
 }
 
-static SmCode check_breakable(const SmEngine *e, SmError *error)
+static SmCode check_breakable(const SmEngine *e, const char *how, SmError *error)
 {
     if (e->lsm->params.strain_limit > 0) return SM_OK;
     return sm_fail(error, SM_USAGE,
-                   "cut: the body was not made to be cut; create it with a strain_limit, "
-                   "INFINITY if it is to break in no other way");
+                   "%s: the body was not made to break; create it with a strain_limit, INFINITY if "
+                   "it is to break in no other way",
+                   how);
 }
 
 static SmCode engine_cut(SmEngine *e, const SmCut *cut, long first, SmError *error)
 {
-    SmCode code = check_breakable(e, error);
+    SmCode code = check_breakable(e, "cut", error);
     if (!code) lsm_cut(e->lsm, e->turn, cut, first);
     return code;
 }
@@ -498,13 +499,18 @@ static SmCode engine_cut(SmEngine *e, const SmCut *cut, long first, SmError *err
 static SmCode engine_break_links(SmEngine *e, long count, const int (*pair)[2], SmError *error)
 {
     const LsmLattice *l = &e->lsm->lattice;
-    SmCode code = check_breakable(e, error);
+    SmCode code = check_breakable(e, "break_links", error);
     if (code || count == 0) return code;
     LsmLink *link = sm_alloc((size_t)count, sizeof *link);
     for (long n = 0; n < count; n++) {
         long p = inner_of(e, pair[n][0]), q = inner_of(e, pair[n][1]);
         int bit = LSM_SELF, stride[3] = {1, 3, 9};
-        for (int d = 0; d < 3; d++) bit += stride[d] * (l->coord[q][d] - l->coord[p][d]);
+        for (int d = 0; d < 3; d++) {
+            int step = l->coord[q][d] - l->coord[p][d];
+            assert(abs(step) <= 1);
+            bit += stride[d] * step;
+        }
+        assert(bit != LSM_SELF);
         link[n] = (LsmLink){(int)p, bit};
     }
     lsm_break(e->lsm, count, link);

@@ -307,6 +307,9 @@ TEST(a_body_that_was_not_made_for_it_is_not_cut)
         const SmEngineType *type = engines[precision];
         SmEngine *engine = create(type, &body, (SmEngineParams){.w = 1, .h = 0.01});
         assert_int_equal(type->cut(engine, &cut, 0, &error), SM_USAGE);
+        assert_non_null(strstr(error.text, "cut: the body was not made to break"));
+        assert_int_equal(type->break_links(engine, 1, (const int[][2]){{0, 1}}, &error), SM_USAGE);
+        assert_non_null(strstr(error.text, "break_links: the body was not made to break"));
         type->destroy(engine);
     }
     sm_cut_free(&cut);

@@ -179,9 +179,9 @@ typedef struct {
      * body was not created to be cut. NULL of engines that cannot cut any. */
     SmCode (*cut)(SmEngine *engine, const SmCut *cut, long first, SmError *error);
 
-    /* Breaks these links of one body, pairs of particles in either order, as strain would have.
-     * Allocates. SM_USAGE: the body was created without a strain_limit. NULL of engines whose
-     * particles have none. */
+    /* Breaks these links of one body, pairs of neighbours at rest in either order, broken or not,
+     * as strain would have. Allocates. SM_USAGE: the body was created without a strain_limit. NULL
+     * of engines whose particles have none. */
     SmCode (*break_links)(SmEngine *engine, long count, const int (*pair)[2], SmError *error);
 
     /* Contacts of the present positions, but those with obstacles, in any order; returns how many.
