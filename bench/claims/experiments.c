@@ -170,6 +170,8 @@ const char *bench_experiment_fault(const BenchMeasure *measure)
     bool cubes = measure->experiment == BENCH_TRY_SIZE || measure->experiment == BENCH_TRY_BREAKING;
     if (cubes && measure->n.from < 4)
         return "cubes have four particles a side or more: n.from is at least 4";
+    if (measure->experiment == BENCH_TRY_BREAKING && measure->n.from < 6)
+        return "each link that breaks has a row of its own: n.from is at least 6";
     if (cubes && measure->n.to > 128)
         return "cubes have at most 128 particles a side: n.to is at most 128";
     if (measure->experiment == BENCH_TRY_ELASTIC_SAG && measure->n.to > BENCH_MOST_OCTANTS)

@@ -84,6 +84,8 @@ TEST(mistakes_are_named_with_their_line)
         {"to = 8", "to = 0", "my.cfg:4:", "whole number"},
         {"from = 1", "from = 9", "my.cfg:2:", "rising"},
         {"to = 8", "to = 80", "my.cfg:2:", "at most 16"},
+        {"experiment = \"sums\"; w = { from = 1;", "experiment = \"breaking\"; n = { from = 5;",
+         "my.cfg:2:", "at least 6"},
         {"w = {", "scene = \"beam\"; w = {", "my.cfg:2:", "'scene' is not of this"},
         {"experiment = \"sums\"; w = { from = 1; to = 8; points = 4; };",
          "experiment = \"scene\"; scene = \"hand\"; field = \"x\";",

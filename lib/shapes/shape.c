@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "../printable.h"
 #include "decimate.h"
 #include "polygonise.h"
 #include "sculpt.h"
@@ -118,16 +119,23 @@ static void set_in_place(const Recipe *recipe, SmMesh *mesh)
         }
 }
 
+static SmCode refuse(const char *name, SmError *error)
+{
+    char names[512] = "";
+    for (int i = 0; i < SHAPES; i++)
+        sm_append(names, sizeof names, "%s%s",
+                  !i               ? ""
+                  : i < SHAPES - 1 ? ", "
+                                   : " and ",
+                  shapes[i].name);
+    return sm_fail(error, SM_USAGE, "%s: no such shape; there are %s", name, names);
+}
+
 SmCode sm_shape_mesh(const char *name, SmMesh *mesh, SmError *error)
 {
     const SmShape *shape = sm_shape_find(name);
     memset(mesh, 0, sizeof *mesh);
-    if (!shape)
-        return sm_fail(
-            error, SM_USAGE,
-            "%s: no such shape; there are penguin, statue, infant, hand, liver, flower, "
-            "balljoint, rabbit, santa, rockerarm, gargoyle, bunny, bust, block, beam and bar",
-            name);
+    if (!shape) return refuse(name, error);
     const Recipe *recipe = &recipes[shape - shapes];
     if (recipe->sculpt)
         make_sculpture(recipe, shape->triangles, mesh);

@@ -184,7 +184,8 @@ TEST(test_unknown_name)
     SmError error;
     assert_null(sm_shape_find("teapot"));
     assert_int_equal(sm_shape_mesh("teapot", &mesh, &error), SM_USAGE);
-    assert_non_null(strstr(error.text, "teapot"));
+    assert_non_null(strstr(error.text, "teapot: no such shape; there are penguin, "));
+    assert_non_null(strstr(error.text, ", beam and bar"));
     assert_null(mesh.position);
 }
 
