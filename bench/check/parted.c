@@ -65,15 +65,10 @@ static bool is_cut(const void *of, const int pair[2])
     return sm_cut_crosses(body->cut, 0, body->x0[pair[0]], body->x0[pair[1]]);
 }
 
-int (*bench_parted_by_cut(const BenchBody *body, long *count))[2]
-{
-    return pairs_that(body, is_cut, body, count);
-}
-
 long bench_parted_wrong(const BenchBody *body, long count, int (*pair)[2])
 {
     long cut, both = 0;
-    int(*parted)[2] = bench_parted_by_cut(body, &cut);
+    int(*parted)[2] = pairs_that(body, is_cut, body, &cut);
     for (long n = 0; n < count; n++) both += has(parted, cut, pair[n]);
     free(parted);
     return count + cut - 2 * both;

@@ -9,10 +9,8 @@
 int (*bench_parted(const BenchBody *body, const SmEngineType *type, SmEngine *engine,
                    long *count))[2];
 
-/* The same that the body's cut parts, found one by one. */
-int (*bench_parted_by_cut(const BenchBody *body, long *count))[2];
-
-/* How many of these pairs the body's cut does not part, and how many more it does. */
+/* How many of these pairs the body's cut does not part, and how many more it does, found one by
+ * one. */
 long bench_parted_wrong(const BenchBody *body, long count, int (*pair)[2]);
 
 /* Takes a step: how many links break in it that are then no longer than the scene's strain limit

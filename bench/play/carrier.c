@@ -120,18 +120,25 @@ static bool refine(BenchGroup *group, double time, OctStructure *s)
     return any;
 }
 
+static int depth_below(const OctTree *tree, int node)
+{
+    int most = 0;
+    for (int n = tree->child[node]; n < tree->child[node] + tree->children[node]; n++) {
+        int depth = 1 + depth_below(tree, n);
+        most = depth > most ? depth : most;
+    }
+    return most;
+}
+
 /* By how many levels a leaf was split at once, at most. */
 static int levels_split(const OctTree *tree, const OctChange *change)
 {
-    unsigned char *split = sm_alloc((size_t)tree->nodes, 1);
     int most = 0;
-    for (long i = 0; i < change->inner_count; i++) split[change->inner[i].node] = 1;
-    for (long i = 0; i < change->inner_count; i++) {
-        int levels = 0;
-        for (int n = change->inner[i].node; n >= 0 && split[n]; n = tree->parent[n]) levels++;
+    for (long i = 0; i < change->removed_count; i++) {
+        const OctRemoved *leaf = &change->removed[i];
+        int levels = leaf->into < 0 ? depth_below(tree, leaf->node) : 0;
         most = levels > most ? levels : most;
     }
-    free(split);
     return most;
 }
 

@@ -262,9 +262,15 @@ void sm_skin_follow(SmSkin *skin, const OctChange *change, long first)
     sm_pieces_free(&pieces);
 }
 
+/* Have links broken since they were noted? */
+static bool has_broken(const SmSkin *skin)
+{
+    return skin->breaks && skin->type->links(skin->engine, NULL, 0) != skin->links;
+}
+
 bool sm_skin_tear(SmSkin *skin)
 {
-    if (!skin->breaks || skin->type->links(skin->engine, NULL, 0) == skin->links) return false;
+    if (!has_broken(skin)) return false;
     note_links(skin, &skin->cut);
     return true;
 }
@@ -272,7 +278,7 @@ bool sm_skin_tear(SmSkin *skin)
 void sm_skin_follow_cut(SmSkin *skin, long first)
 {
     const SmCut *cut = &skin->cut;
-    if (skin->breaks) note_links(skin, NULL);
+    if (has_broken(skin)) note_links(skin, NULL); /* which were cut */
     if (skin->surface.vertex_count == 0) return;
     SmPieces pieces;
     skin->type->pieces(skin->engine, &pieces);
