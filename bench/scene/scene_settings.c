@@ -230,6 +230,18 @@ static const BenchSetting meshless_table[] = {
               "12000, of thin bodies up to 400000)")},
     {"thickness", BENCH_IN(BenchScene, meshless.thickness), 0, FAR,
      SHELL("thickness", "T", "in the mesh's units (default: a hundredth of its longest extent)")},
+    {"covers", BENCH_IN(BenchScene, meshless.covers), 0, 100,
+     SAYS("A shell's functions are linear, of covers as many edges of their cells wide (3 in the "
+          "paper); 0: quadratic, of covers six edges wide")},
+    {"strength", BENCH_IN(BenchScene, meshless.strength), 0, 1e30,
+     SHELL("strength", "S",
+           "it cracks where its largest principal stress is above S Pa (default: "
+           "never)")},
+    {"branching", BENCH_IN(BenchScene, meshless.branching), 0, 1e6,
+     SAYS("A crack of a shell goes on in two from this many times the strength on; 0: never")},
+    {"pressure", BENCH_IN(BenchScene, meshless.pressure), -1e30, 1e30,
+     SAYS("Pa, inside a closed shell, along its normals at rest")},
+    {"pulse", BENCH_IN(BenchScene, meshless.pulse), 0, 1e9, SAYS("for so many seconds at first")},
     {"stiffness_damping", BENCH_IN(BenchScene, meshless.stiffness_damping), 0, 1e6,
      SAYS("Rayleigh's b, s: a mode of angular frequency f has the loss factor b f")},
     {"nodes", BENCH_IN(BenchScene, meshless.nodes), 8, 1e6,

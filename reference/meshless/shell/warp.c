@@ -10,8 +10,9 @@
 
 /* A place that functions leave less of its area by this share is none. */
 static const double LEAST_AREA = 0.4;
-/* How stiffly nodes of a cracked shell are tied to where u has them, beside the Laplacian. */
-static const double TIE = 1e-6;
+/* How stiffly nodes of a cracked shell are tied to where u has them, beside the Laplacian, whose
+ * diagonal is of the order of 1, but 0 where no place bears. */
+static const double TIE = 1e-9;
 enum { PLACES = REF_WARP_PLACES, LANES = REF_FRAME_SLOPES };
 
 static void release(RefWarp *warp)
@@ -208,7 +209,7 @@ static void share_mass(const RefShell *shell, RefWarp *warp)
 static void tie(RefWarp *warp)
 {
     const RefSparse *L = &warp->laplacian.stiffness;
-    for (long n = 0; n < warp->nodes; n++) L->value[L->start[n]] += TIE * warp->mass[n];
+    for (long n = 0; n < warp->nodes; n++) L->value[L->start[n]] += TIE;
 }
 
 SmCode ref_warp_create(const RefShell *shell, RefWarp *warp, SmError *error)
@@ -478,9 +479,9 @@ void ref_warp_pose(RefWarp *warp, const double (*u)[3])
     for (long c = 0; c < warp->cells; c++) pose_cell(warp, c, u);
     for (long n = 0; n < warp->nodes; n++)
         for (int d = 0; d < 3; d++) {
-            warp->right[n][d] = warp->sum[n][d] + tied * warp->mass[n] * u[n][d];
-            warp->pulled[n][d] = warp->drawn[n][d] + warp->sum[n][FORCE + d] +
-                                 tied * warp->mass[n] * warp->answer[n][d];
+            warp->right[n][d] = warp->sum[n][d] + tied * u[n][d];
+            warp->pulled[n][d] =
+                warp->drawn[n][d] + warp->sum[n][FORCE + d] + tied * warp->answer[n][d];
         }
     solve(warp, (const double(*)[3])warp->right, (const double(*)[3])warp->target, warp->moved);
     match_means(warp, u, warp->moved);
