@@ -27,7 +27,9 @@ SmCode ref_breaking_create(RefSheet *sheet, const RefCrackedOptions *cracked,
                        cracked->most_splits, options->most_starts);
     breaking->sheet = sheet;
     ref_cracked_create(&sheet->shell, &sheet->options.shell, cracked, &breaking->cracked);
-    return SM_OK;
+    SmCode code = ref_breaking_update(breaking, error); /* to the matrices of one that cracks */
+    if (code != SM_OK) ref_breaking_free(breaking);
+    return code;
 }
 
 static double *copy_field(const double *field, long size)

@@ -16,7 +16,7 @@ typedef struct {
 
 /* Of a sheet whose shell has no cracks. `breaking` must not move in memory. The caller frees it
  * before the sheet. Errors: SM_USAGE, a strength that is not above 0, a share out of 0..1, negative
- * numbers of splits or starts. */
+ * numbers of splits or starts; solver.h's. */
 SmCode ref_breaking_create(RefSheet *sheet, const RefCrackedOptions *cracked,
                            const RefFractureOptions *options, RefBreaking *breaking,
                            SmError *error);

@@ -94,22 +94,20 @@ static void find_above(RefCracked *cracked)
     ref_shape_free(&shape);
 }
 
-/* The place on the whole shell's middle surface, its area over that in the plane and the trace of
- * its inverse metric; where functions are not defined, of the chart's, which that was fitted to. */
+/* The place on the whole shell's middle surface and its area over that in the plane; where
+ * functions are not defined, of the chart's, which that was fitted to. */
 static void whole_at(const RefCracked *cracked, const double theta[3], RefShape *whole, double x[3],
-                     double *area, double *trace)
+                     double *area)
 {
     const RefChart *chart = &cracked->shell->chart;
     if (ref_mls_at(&cracked->whole, cracked->shell->basis, theta, whole)) {
         RefFrame frame = ref_middle_of((const double(*)[3])cracked->whole_X, whole);
         memcpy(x, frame.x, sizeof frame.x);
         *area = frame.area;
-        *trace = frame.inverse[0] + frame.inverse[1];
     } else {
         double L = chart->factor(chart->data, theta);
         chart->place(chart->data, theta, x);
         *area = L * L;
-        *trace = 2 / *area;
     }
 }
 
@@ -121,7 +119,8 @@ static void take_samples(const RefCracked *cracked, long c, RefShape *shape, Ref
     ref_samples_of(&shell->tree, c, &shell->nodes, shell->basis, shape, samples);
     for (long p = 0; p < samples->count; p++) {
         double x[3], area;
-        whole_at(cracked, samples->theta[p], whole, x, &area, samples->trace + p);
+        whole_at(cracked, samples->theta[p], whole, x, &area);
+        samples->trace[p] = 2 / area; /* as if the map were conformal: see cracked.h */
         samples->area[p] = area * samples->weight[p];
     }
 }
@@ -333,8 +332,8 @@ static void place_parameter(RefCracked *cracked, const RefCrackedCell *cell, int
 {
     const RefShell *shell = cracked->shell;
     const double *above = cracked->whole_above[cracked->cell[cell->whole].node[0]];
-    double x[3], area, trace;
-    whole_at(cracked, shell->nodes.position[node], whole, x, &area, &trace);
+    double x[3], area;
+    whole_at(cracked, shell->nodes.position[node], whole, x, &area);
     for (int d = 0; d < 3; d++) shell->X[node][d] = x[d] + ldexp(above[d], -2 * cell->splits);
 }
 
