@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """What one would take instead: Bullet's soft bodies beside shapebench's engines, on the same body and machine.
 
-usage: baselines.py [--cells N] [--w W] [--h S] [--sag SHARE] [--format text|markdown|csv|json]
+usage: baselines.py [--cells N] [--w W] [--h S] [--sag SHARE] [--format text|markdown|csv|json] [-o FILE.h5 [--overwrite]]
 
 The body is a beam of N x N cells through (4) and 8 N along, clamped at one end, of 1,000 kg/m^3. Gravity is chosen so that
 the lattice engine with half-width W (2) and step S (0.001 s) sags by SHARE (0.1) of its length. Every other method gets
@@ -13,10 +13,11 @@ the same nodes, masses and gravity, and the stiffness with which it sags as much
                   rms, of the beam's length
 Comparable: nodes, masses, gravity, static sag, machine, one thread. Not comparable: Bullet's elements are implicit and
 keep their stiffness at any step, the engines' and the clusters' stiffness goes with 1/step^2; damping; collisions, which
-are off.
-Exit codes: 0 done; 2 usage; 3 Bullet (libbullet-dev, g++) or the library is not there."""
+are off. FILE.h5 (results/README.md) is for `shapebench report`.
+Exit codes: 0 done; 2 usage; 3 Bullet (libbullet-dev, g++) or the library is not there; 4 FILE.h5 cannot be written."""
 import argparse
 import csv
+import io
 import itertools
 import json
 import os
@@ -31,10 +32,13 @@ import numpy
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), ".."))
 sys.path.insert(0, os.path.join(ROOT, "lib", "python"))
+sys.path.insert(1, os.path.join(ROOT, "scripts", "report"))
+import draft
 os.environ.setdefault("SHAPEBENCH_LIBRARY", os.path.join(ROOT, "build", "libshapebench.so"))
 os.environ["OMP_NUM_THREADS"] = "1"
 
 DENSITY, THICK, TIMED, MOST_ITERATIONS = 1000.0, 0.1, 100, 64
+STORED = ("method", "stiffness", "step", "sag_percent", "ms_step", "ns_node_step", "ms_second", "deviation_percent")
 COLUMNS = ("method", "stiffness", "step s", "sag %", "ms/step", "ns/node/step", "ms/s", "deviation %")
 
 
@@ -173,7 +177,7 @@ def measure(sb, options):
                 **lattice)), len(beam.nodes), lies, reference)]
     rows += [elements(beam, gravity, sag, step, reference) for step in (options.h, 1 / 240)]
     rows += [clusters(beam, gravity, sag, step, reference) for step in (options.h, 1 / 240)]
-    return rows
+    return rows, {"nodes": len(beam.nodes), "length": beam.length, "sag_percent": 100 * sag, "w": options.w, "h": options.h}
 
 
 def elastic(sb, beam, gravity, sag):
@@ -236,6 +240,35 @@ def write(rows, form, file):
             file.write(("| " + " | ".join(line) + " |" if form == "markdown" else "  ".join(line).rstrip()) + "\n")
 
 
+def processor():
+    with open("/proc/cpuinfo", encoding="utf-8") as file:
+        return next((line.split(":", 1)[1].strip() for line in file if line.startswith("model name")), "unknown")
+
+
+def git(*words):
+    done = subprocess.run(["git", "-C", ROOT, *words], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    return done.stdout.strip()
+
+
+def store(rows, plan, output, overwrite):
+    """The rows for reports, whole or not at all; raises draft.Refused and OSError."""
+    import h5py
+    room = io.BytesIO()
+    with h5py.File(room, "w") as h5:
+        h5.attrs.update({"kind": "shapebench baselines", "schema": 1})
+        machine, methods = h5.create_group("machine"), h5.create_group("methods")
+        machine.attrs.update({"cpu": processor(), "cores": os.cpu_count(), "threads": 1,
+                              "git_commit": git("rev-parse", "HEAD") or "unknown",
+                              "git_dirty": int(bool(git("status", "--porcelain"))),
+                              "utc": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())})
+        h5.create_group("plan").attrs.update(plan)
+        for name, column in zip(STORED, COLUMNS):
+            values = [each[column] for each in rows]
+            methods[name] = numpy.array([value.encode() for value in values] if isinstance(values[0], str) else values)
+    with draft.begun(output, overwrite) as file:
+        file.write(room.getvalue())
+
+
 def main(arguments):
     parser = argparse.ArgumentParser(usage=__doc__.split("\n\n")[1].removeprefix("usage: "))
     parser.add_argument("--cells", type=int, default=4, choices=range(2, 17), metavar="N")
@@ -244,6 +277,8 @@ def main(arguments):
     parser.add_argument("--sag", type=float, default=0.1)
     parser.add_argument("--settle", type=int, default=600, help=argparse.SUPPRESS)
     parser.add_argument("--format", default="text", choices=("text", "markdown", "csv", "json"))
+    parser.add_argument("-o", "--output")
+    parser.add_argument("--overwrite", action="store_true")
     options = parser.parse_args(arguments)
     if not 1e-5 <= options.h <= 0.1 or not 0.001 <= options.sag <= 0.3:
         parser.error("--h is 1e-5 to 0.1, --sag 0.001 to 0.3")
@@ -253,7 +288,16 @@ def main(arguments):
     except (ImportError, OSError) as reason:
         return missing(f"{reason}; scripts/run builds the library")
     build_adapter()
-    write(measure(sb, options), options.format, sys.stdout)
+    try:
+        if options.output:
+            draft.check(options.output, options.overwrite)  # before what takes minutes
+        rows, plan = measure(sb, options)
+        write(rows, options.format, sys.stdout)
+        if options.output:
+            store(rows, plan, options.output, options.overwrite)
+    except (draft.Refused, OSError) as reason:
+        print(f"baselines.py: {reason}", file=sys.stderr)
+        return 4
     return 0
 
 

@@ -3,6 +3,7 @@ import math
 import re
 import subprocess
 
+import alternatives
 import history
 from drawing import STATUS_MARKS, number
 from tables import PAPERS, joined, threads_text
@@ -104,6 +105,7 @@ def found(program, files, past):
         changes = [change + "." for change in history.changes(past)] or list(history.sentences(past))[:1]
         more = [f"{len(changes) - NAMED} more changes are below."] if len(changes) > NAMED + 1 else changes[NAMED:]
         told["history", "History"] = changes[:NAMED] + more
+    told["baselines", "Instead"] = (text for source in files if source.method for text in alternatives.summary(source))
     told["claims", "Claims"] = (text for source in files for text in claims(source))
     told["sweeps", "w and epsilon"] = (text for source in files if source.point for text in recommendations(program, source))
     told["calibrations", "Elasticity"] = (source.found[0].split(", those ")[0].rstrip(".") + "."

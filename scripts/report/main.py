@@ -29,6 +29,7 @@ try:
     import jinja2
     from markupsafe import Markup
 
+    import alternatives
     import calibration_figures
     import claim_figures
     import draft
@@ -103,13 +104,21 @@ def calibrations_part(files):
                 [figure for source in files for figure in calibration_figures.figures(source)])
 
 
+def baselines_part(files):
+    files = [source for source in files if source.method]
+    if not files:
+        return None
+    return Part("baselines", "What one would take instead", (text for source in files for text in alternatives.summary(source)),
+                map(alternatives.table, files))
+
+
 def compose(program, files):
     """What was found, in sentences, and the sections."""
     past = history.read(program, files)
     if past:
         files = [source for source in files if source not in history.superseded(past)]
-    parts = [scenes_part(files), measured_part(files), history_part(program, past), claims_part(files), sweeps_part(files),
-             calibrations_part(files), Part("environment", "Where and how", tables=tables.environment(files))]
+    parts = [scenes_part(files), measured_part(files), history_part(program, past), baselines_part(files), claims_part(files),
+             sweeps_part(files), calibrations_part(files), Part("environment", "Where and how", tables=tables.environment(files))]
     return headline.found(program, files, past), [part for part in parts if part]
 
 
@@ -225,7 +234,8 @@ def write_folder(output, page, overwrite):
 
 def parse():
     parser = argparse.ArgumentParser(prog="shapebench report", description=__doc__.splitlines()[0])
-    parser.add_argument("file", nargs="+", help="files that `shapebench tables`, `claims`, `sweep` and `calibrate` wrote with -o")
+    parser.add_argument("file", nargs="+", help="files that `shapebench tables`, `claims`, `sweep` and `calibrate` "
+                        "and baselines.py wrote with -o")
     parser.add_argument("-o", "--output", default="report.html",
                         help="a page NAME.html, or a folder (default: %(default)s)")
     parser.add_argument("--overwrite", action="store_true", help="replace a page or report that is there")

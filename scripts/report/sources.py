@@ -1,7 +1,8 @@
 """Result files, read for a report. Nothing here knows how they will look.
 
 Layouts are those of results/README.md: measurements ("shapebench results"), claims ("shapebench claims")
-sweeps ("shapebench sweep") and calibrations ("shapebench calibration")."""
+sweeps ("shapebench sweep"), calibrations ("shapebench calibration") and what baselines.py measures ("shapebench
+baselines")."""
 import math
 import os
 import re
@@ -23,6 +24,7 @@ class Source:
         self.rows, self.claims, self.curves, self.meanings = [], [], {}, {}
         self.plan, self.point = None, None
         self.specimen, self.law, self.found = None, None, []
+        self.beam, self.method = None, None
 
     @property
     def commit(self):
@@ -143,7 +145,7 @@ def read_sweep(source, file):
 def read_columns(group, texts, numbers):
     """The group's datasets, all of one length; "young:4" are four numbers a line."""
     column = {name: values[:] for name, values in group.items()}
-    count = len(column["engine"])
+    count = len(column[texts.split()[0]])
     for name, kinds in [(name, "S") for name in texts.split()] + [(name, "iuf") for name in numbers.split()]:
         name, _, wide = name.partition(":")
         if column[name].shape != ((count, int(wide)) if wide else (count,)):
@@ -168,16 +170,26 @@ def read_calibration(source, file):
         raise ValueError("not one specimen is finished")
 
 
+def read_baselines(source, file):
+    source.beam = attributes(file["plan"])
+    demand(source.beam, numbers="nodes sag_percent length w h")
+    source.method = read_columns(file["methods"], "method stiffness",
+                                 "step sag_percent ms_step ns_node_step ms_second deviation_percent")
+    if not len(source.method["method"]):
+        raise ValueError("not one method is there")
+
+
 # By kind: the schema that is read, and what reads it.
 READERS = {"shapebench results": (4, read_rows), "shapebench claims": (2, read_claims),
-           "shapebench sweep": (1, read_sweep), "shapebench calibration": (1, read_calibration)}
+           "shapebench sweep": (1, read_sweep), "shapebench calibration": (1, read_calibration),
+           "shapebench baselines": (1, read_baselines)}
 
 
 def read_file(path, file):
     kind, schema = plain(file.attrs.get("kind", "")), plain(file.attrs.get("schema", 0))
     if kind not in READERS:
         raise Unusable(f"{path}: not a file that can be reported (its kind is {kind!r}): give files that "
-                       "`shapebench tables`, `claims`, `sweep` or `calibrate` wrote with -o")
+                       "`shapebench tables`, `claims`, `sweep` or `calibrate` or scripts/baselines.py wrote with -o")
     known, fill = READERS[kind]
     if schema != known:
         newer = isinstance(schema, int) and schema > known

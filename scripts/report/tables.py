@@ -225,12 +225,16 @@ def environment(sources):
     """What wrote the files: what all share, and then what is each file's own."""
     def value(source, name):
         value = source.machine.get(name, "unknown")
+        if value == "unknown":
+            return value
         return ("yes" if value else "no") if name == "git_dirty" else f"{value:,}" if isinstance(value, int) else value
 
     shared = Table("Where these were measured", ["", "all files" if len(sources) > 1 else sources[0].name])
     own = {}
     for name, title in ENVIRONMENT:
         values = [value(source, name) for source in sources]
+        if not any(name in source.machine for source in sources):
+            continue
         if len(set(values)) == 1:
             shared.add([title, values[0]])
         else:

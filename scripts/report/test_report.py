@@ -35,6 +35,8 @@ import tables  # noqa: E402
 
 PROGRAM = sys.argv.pop(1)
 SOURCES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+sys.path.insert(1, os.path.join(SOURCES, "scripts"))
+import baselines  # noqa: E402
 
 
 class Page(html.parser.HTMLParser):
@@ -259,6 +261,21 @@ class Report(unittest.TestCase):
         with h5py.File(path, "r+") as file:
             del file["laws/scatter"]
         self.refused(path, "missing")
+
+    def test_what_one_would_take_instead_has_its_table(self):
+        path = self.at("baselines.h5")
+        line = dict(zip(baselines.COLUMNS, ("ours", "w 2", 0.001, 9.98, 0.0284, 55.5, 28.4, 1.25)))
+        other = line | {"method": "theirs", "ms/step": 11.7, "deviation %": float("nan")}
+        plan = {"nodes": 825, "length": 0.8, "sag_percent": 9.98, "w": 2, "h": 0.001}
+        baselines.store([line, other, other | {"step s": 1 / 240, "ms/step": 19.7}], plan, path, False)
+        page = self.page(path)
+        said = ("A clamped beam of 825 nodes that sags by 9.98% of its length costs 0.0284 ms a step with ours, at the same "
+                "step of 0.001 s 11.7 ms with theirs.")
+        self.assertEqual(page.text.count(said), 2)  # in the headline, and above the table
+        for text in ("55.5", "19.7", "0.00417"):
+            self.assertIn(text, page.text)
+        with self.assertRaises(draft.Refused):
+            baselines.store([line], plan, path, False)
 
     def test_the_papers_values_are_those_of_tables(self):
         rows = sources.read(self.rows).rows
