@@ -58,8 +58,8 @@ enum {
 double view_figure(int side, int figure);
 
 /* Milliseconds a step of each of the five stages (lib/engine/stage.h), of the first and of every
- * eighth step since view_clear_stages(); NaN: there was none. Reading the clock is a part of them.
- */
+ * eighth step since view_clear_stages(); NaN: there was none. Less what reading the clock takes at
+ * best, which a browser's coarse one does not say: there stages of many laps look longer. */
 double view_stage_ms(int side, int stage);
 
 /* What the side's engine calls the stage; NULL: it has no such. */
