@@ -235,10 +235,11 @@ def environment(sources):
         values = [value(source, name) for source in sources]
         if not any(name in source.machine for source in sources):
             continue
-        if len(set(values)) == 1:
-            shared.add([title, values[0]])
+        known = sorted(set(values) - {"unknown"})
+        if len(known) <= 1:
+            shared.add([title, known[0] if known else "unknown"])
         else:
-            own[title] = values
+            own[title] = [text[:10] for text in values] if name == "git_commit" else values
     differ = Table("What each file has of its own", ["file", *own])
     for i, source in enumerate(sources):
         differ.add([source.name, *(values[i] for values in own.values())])
