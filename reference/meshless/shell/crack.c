@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../../lib/csr.h"
 #include "../body/mls.h"
 
 /* Where b is this share of a node's reach, half a cell of covers four cells wide. */
@@ -138,11 +139,6 @@ static void bin_pieces(RefCracks *cracks)
     cracks->box[0] = -1;
 }
 
-static int by_number(const void *a, const void *b)
-{
-    return *(const int *)a - *(const int *)b;
-}
-
 /* Takes all pieces of these bins, rising. */
 static void gather(RefCracks *cracks, const int box[4])
 {
@@ -155,7 +151,7 @@ static void gather(RefCracks *cracks, const int box[4])
     }
     long all = cracks->near_count;
     cracks->near_count = 0;
-    if (all > 1) qsort(cracks->near, (size_t)all, sizeof *cracks->near, by_number);
+    sm_sort_ints(cracks->near, all);
     for (long n = 0; n < all; n++)
         if (n == 0 || cracks->near[n] != cracks->near[n - 1])
             cracks->near[cracks->near_count++] = cracks->near[n];

@@ -40,7 +40,8 @@ int ref_samples_shape(const RefNodes *nodes, RefBasis basis, double edge, const 
                       RefShape *shape);
 
 /* The functions at a place from those at the sample `near` beside it: Taylor's to second order,
- * which reproduce all that the basis does. */
+ * which reproduce all that the basis does; where one of them leaves -2..2, as between cracks, the
+ * sample's own without derivatives. */
 void ref_samples_expand(const RefSamples *samples, long near, const double theta[2],
                         RefShape *shape);
 

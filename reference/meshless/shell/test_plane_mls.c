@@ -1,5 +1,6 @@
 /* Shape functions in the plane, on balanced quadtrees of random charts, also across seams. */
 #include "../body/covers.h"
+#include "samples.h"
 #include "test_charts.h"
 
 static unsigned seed = 1;
@@ -283,5 +284,29 @@ TEST(moving_the_seams_changes_nothing)
         ref_nodes_free(&others);
         ref_quadtree_free(&tree);
         ref_quadtree_free(&other);
+    }
+}
+
+/* Functions beside a sample are Taylor's, and where they would leave what functions are the
+ * sample's own. */
+TEST(steep_functions_do_not_lead_out)
+{
+    double theta[1][3] = {{0.2, 0.3, 0}},
+           part[2][6] = {{0.6, 2, -1, 4, 0, 2}, {0.4, -2, 1, -4, 0, -2}};
+    long start[2] = {0, 2};
+    int node[2] = {3, 5}, number[2];
+    double value[2], gradient[2][3], second[2][3];
+    RefSamples samples = {.count = 1, .theta = theta, .start = start, .node = node, .part = part};
+    RefShape shape = {.node = number, .value = value, .gradient = gradient, .second = second};
+    for (int far = 0; far < 2; far++) {
+        double x = far ? 1 : 0.1, y = 0.05, at[2] = {0.2 + x, 0.3 + y};
+        ref_samples_expand(&samples, 0, at, &shape);
+        assert_int_equal(shape.count, 2);
+        assert_int_equal(shape.node[1], 5);
+        assert_true(fabs(value[0] + value[1] - 1) < 1e-15);
+        double wanted = far ? 0.6 : 0.6 + 2 * x - y + 2 * x * x + 2 * x * y;
+        assert_true(fabs(value[0] - wanted) < 1e-15);
+        assert_true(fabs(gradient[0][0] - (far ? 0 : 2 + 4 * x + 2 * y)) < 1e-15);
+        assert_true(second[1][0] == (far ? 0 : -4));
     }
 }

@@ -5,9 +5,11 @@
  * What the surface is to have there are the tangents exp(w) (a_k + e_k), and it is put where its
  * own come closest to them: least squares over the samples, a solve with one factorised matrix of
  * [nodes]^2, the surface's Laplacian (rotation and strain in place of displacements: Huang, Tong,
- * Zhou, Bao and Desbrun 2011). Small displacements and rigid motions of any size are exact; and
- * where bending strains nothing, lengths stay, whatever it has turned by: modal warping at the
- * nodes (motion.h) shortens a strip that is bent by 90 degrees by an eighth. */
+ * Zhou, Bao and Desbrun 2011). Small displacements and rigid motions of any size are exact, of
+ * a shell that breaks to 1e-5: its nodes are tied a little to u, because between cracks some hang
+ * on the others by next to no slope. And where bending strains nothing, lengths stay, whatever it
+ * has turned by: modal warping at the nodes (motion.h) shortens a strip that is bent by 90 degrees
+ * by an eighth. */
 #ifndef REF_WARP_H
 #define REF_WARP_H
 
