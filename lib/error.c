@@ -74,6 +74,13 @@ void *sm_alloc_at(size_t count, size_t size, const char *file, int line)
     return memory;
 }
 
+void *sm_copy_at(const void *array, size_t count, size_t size, const char *file, int line)
+{
+    void *copy = sm_alloc_at(count, size, file, line);
+    if (count) memcpy(copy, array, count * size);
+    return copy;
+}
+
 void *sm_realloc_at(void *pointer, size_t count, size_t size, const char *file, int line)
 {
     if (size && count > SIZE_MAX / size) out_of_memory(count, size, file, line);

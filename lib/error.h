@@ -37,6 +37,10 @@ void sm_write_line(char *text, size_t size, const char *format, va_list argument
 #define sm_alloc(count, size) sm_alloc_at((count), (size), __FILE__, __LINE__)
 void *sm_alloc_at(size_t count, size_t size, const char *file, int line);
 
+/* A copy of an array, likewise. */
+#define sm_copy(array, count, size) sm_copy_at((array), (count), (size), __FILE__, __LINE__)
+void *sm_copy_at(const void *array, size_t count, size_t size, const char *file, int line);
+
 /* realloc() that ends the program when there is no memory; grown bytes are not zeroed. */
 #define sm_realloc(pointer, count, size)                                                           \
     sm_realloc_at((pointer), (count), (size), __FILE__, __LINE__)

@@ -173,3 +173,15 @@ void ref_nodes_place(const RefField *field, const RefOctants *tree, double alpha
         }
     ref_nodes_bin(nodes);
 }
+
+RefNodes ref_nodes_copy(const RefNodes *nodes)
+{
+    RefNodes copy = *nodes;
+    copy.position = sm_copy(nodes->position, (size_t)nodes->count, sizeof *nodes->position);
+    copy.reach = sm_copy(nodes->reach, (size_t)nodes->count, sizeof *nodes->reach);
+    copy.owner = NULL;
+    copy.start = NULL;
+    copy.member = NULL;
+    ref_nodes_bin(&copy);
+    return copy;
+}

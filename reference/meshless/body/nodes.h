@@ -58,6 +58,9 @@ void ref_nodes_place(const RefField *field, const RefOctants *tree, double alpha
 
 void ref_nodes_free(RefNodes *nodes);
 
+/* A copy with bins of its own, which the caller frees. */
+RefNodes ref_nodes_copy(const RefNodes *nodes);
+
 /* Makes images and bins anew after reaches have changed. */
 void ref_nodes_bin(RefNodes *nodes);
 

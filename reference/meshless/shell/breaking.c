@@ -1,8 +1,6 @@
 #include "breaking.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 void ref_breaking_free(RefBreaking *breaking)
 {
@@ -32,38 +30,18 @@ SmCode ref_breaking_create(RefSheet *sheet, const RefCrackedOptions *cracked,
     return code;
 }
 
-static double *copy_field(const double *field, long size)
-{
-    double *copy = sm_alloc((size_t)size, sizeof *copy);
-    memcpy(copy, field, (size_t)size * sizeof *copy);
-    return copy;
-}
-
-/* Adds to displacements and velocities what is left of the old ones. */
-static void project(RefBreaking *breaking)
-{
-    RefSteps *steps = &breaking->sheet->steps;
-    long size = 3 * breaking->sheet->shell.nodes.count;
-    double *fields[2] = {steps->u, steps->v};
-    for (int f = 0; f < 2; f++) {
-        ref_solver_solve(steps->solver, breaking->residual[f], NULL, steps->other);
-        for (long n = 0; n < size; n++) fields[f][n] += steps->other[n];
-    }
-}
-
 SmCode ref_breaking_update(RefBreaking *breaking, SmError *error)
 {
     RefSheet *sheet = breaking->sheet;
-    long size = 3 * sheet->shell.nodes.count;
-    double *field[3] = {copy_field(sheet->steps.u, size), copy_field(sheet->steps.v, size),
-                        copy_field(sheet->warp.moved[0], size)};
-    RefCrackedFields fields = {ref_steps_mass_share(&sheet->options.damping, sheet->options.h), 3,
-                               field, 2, breaking->residual};
+    size_t size = 3 * (size_t)sheet->shell.nodes.count;
+    double *field[3] = {sm_copy(sheet->steps.u, size, sizeof(double)),
+                        sm_copy(sheet->steps.v, size, sizeof(double)),
+                        sm_copy(sheet->warp.moved, size, sizeof(double))};
+    const RefCrackedFields fields = {3, field, breaking->residual};
     RefCrackedSaved saved = ref_cracked_save(&breaking->cracked);
     ref_cracked_update(&breaking->cracked, &fields);
-    SmCode code = ref_sheet_renew(sheet, field[0], field[1], field[2], error);
+    SmCode code = ref_sheet_renew(sheet, field[0], field[1], field[2], breaking->residual, error);
     if (code == SM_OK) {
-        project(breaking);
         ref_sheet_anchor(sheet);
         ref_cracked_saved_free(&saved);
     } else

@@ -42,26 +42,6 @@ void ref_cracked_free(RefCracked *cracked)
     *cracked = (RefCracked){.shell = NULL};
 }
 
-static void *copy_of(const void *array, size_t count, size_t size)
-{
-    void *copy = sm_alloc(count, size);
-    memcpy(copy, array, count * size);
-    return copy;
-}
-
-/* Nodes with bins of their own. */
-static RefNodes copy_nodes(const RefNodes *nodes)
-{
-    RefNodes copy = *nodes;
-    copy.position = copy_of(nodes->position, (size_t)nodes->count, sizeof *nodes->position);
-    copy.reach = copy_of(nodes->reach, (size_t)nodes->count, sizeof *nodes->reach);
-    copy.owner = NULL;
-    copy.start = NULL;
-    copy.member = NULL;
-    ref_nodes_bin(&copy);
-    return copy;
-}
-
 /* The cells' nodes, in the order of ref_quadtree_nodes(). */
 static void number_nodes(RefCracked *cracked)
 {
@@ -251,8 +231,8 @@ void ref_cracked_create(RefShell *shell, const RefShellOptions *options,
     cracked->cell_room = shell->tree.count;
     for (size_t n = 0; n < nodes; n++) margin = fmax(margin, shell->nodes.reach[n]);
     ref_cracks_create(&shell->chart, margin, &cracked->cracks);
-    cracked->whole = copy_nodes(&shell->nodes);
-    cracked->whole_X = copy_of(shell->X, nodes, sizeof *shell->X);
+    cracked->whole = ref_nodes_copy(&shell->nodes);
+    cracked->whole_X = sm_copy(shell->X, nodes, sizeof *shell->X);
     number_nodes(cracked);
     find_above(cracked);
     shell->nodes.cut = (RefCut){ref_cracks_pass, &cracked->cracks};
@@ -374,76 +354,8 @@ static unsigned char *move_nodes(RefCracked *cracked)
     return fresh;
 }
 
-/* The functions and fields that a shell had. */
-typedef struct {
-    RefNodes nodes;
-    double (*X)[3];
-    double (**field)[3];
-    RefShape shape;
-    double (*part)[6]; /* of `shape` */
-} Before;
-
-static Before remember(const RefCracked *cracked, const RefCrackedFields *fields)
-{
-    const RefShell *shell = cracked->shell;
-    size_t nodes = (size_t)shell->nodes.count;
-    Before before = {.nodes = copy_nodes(&shell->nodes),
-                     .X = copy_of(shell->X, nodes, sizeof(double[3]))};
-    before.nodes.cut.pass = ref_cracks_passed;
-    before.shape = ref_shape_create(&before.nodes);
-    before.part = sm_alloc((size_t)before.nodes.most, sizeof *before.part);
-    before.field = sm_alloc((size_t)(fields ? fields->count : 0), sizeof *before.field);
-    for (int f = 0; fields && f < fields->count; f++)
-        before.field[f] = copy_of(fields->field[f], nodes, sizeof(double[3]));
-    return before;
-}
-
-static void forget(const RefCrackedFields *fields, Before *before)
-{
-    for (int f = 0; fields && f < fields->count; f++) free(before->field[f]);
-    ref_nodes_free(&before->nodes);
-    ref_shape_free(&before->shape);
-    sm_free_all(before->X, before->part, before->field);
-}
-
-/* A place among the functions that there were, of the cell that was terminal then. */
-static RefFieldPlace place_before(const RefCracked *cracked, long cell, const double theta[3],
-                                  Before *before)
-{
-    RefShape *shape = &before->shape;
-    ref_samples_shape(&before->nodes, cracked->shell->basis, edge_of(cracked, cell), theta, shape);
-    for (int n = 0; n < shape->count; n++) ref_samples_part(shape, n, before->part[n]);
-    return (RefFieldPlace){shape->count, shape->node, (const double(*)[6])before->part,
-                           (const double(*)[3])before->X, NULL};
-}
-
-/* A field's parameters at a new node: the field there, and a quarter a split of what the parameters
- * of the cell that was split were above it. */
-static void place_field(const RefCracked *cracked, const RefCrackedCell *cell, int node,
-                        Before *before, const RefCrackedFields *fields)
-{
-    const RefShell *shell = cracked->shell;
-    const RefCrackedCell *from = cracked->cell + cell->from;
-    int parent = from->node[0];
-    const double *at[2] = {shell->nodes.position[node], before->nodes.position[parent]};
-    for (int f = 0; f < fields->count; f++) {
-        double *u = fields->field[f] + 3 * (long)node,
-               share = ldexp(1, -2 * (cell->splits - from->splits));
-        for (int d = 0; d < 3; d++) u[d] = share * before->field[f][parent][d];
-    }
-    for (int k = 0; k < 2; k++) {
-        RefFieldPlace place = place_before(cracked, cell->from, at[k], before);
-        double share = k ? -ldexp(1, -2 * (cell->splits - from->splits)) : 1;
-        for (int f = 0; f < fields->count; f++)
-            for (int n = 0; n < place.count; n++)
-                for (int d = 0; d < 3; d++)
-                    fields->field[f][3 * (long)node + d] +=
-                        share * place.part[n][0] * before->field[f][place.node[n]][d];
-    }
-}
-
 /* Parameters of new nodes. */
-static void fill_nodes(RefCracked *cracked, const unsigned char *fresh, Before *before,
+static void fill_nodes(RefCracked *cracked, const unsigned char *fresh, RefFieldsBefore *before,
                        const RefCrackedFields *fields)
 {
     RefShape whole = ref_shape_create(&cracked->whole);
@@ -452,7 +364,7 @@ static void fill_nodes(RefCracked *cracked, const unsigned char *fresh, Before *
         for (int n = 0; terminal(cracked, c) && n < cell->nodes; n++) {
             if (!fresh[cell->node[n]]) continue;
             place_parameter(cracked, cell, cell->node[n], &whole);
-            if (fields) place_field(cracked, cell, cell->node[n], before, fields);
+            if (fields) ref_fields_place(cracked, cell, cell->node[n], before, fields);
         }
     }
     ref_shape_free(&whole);
@@ -479,158 +391,82 @@ static bool is_stale(const RefCracked *cracked, const RefCrackedCell *cell,
     return false;
 }
 
-/* Sums over cells that were split: samples of the new ones are others, so that the fields' sums
- * change with them. */
-typedef struct {
-    double (*lost)[3]; /* [residuals] */
-    double area;
-    double *seen; /* [nodes] phi over the new samples' areas */
-} Balance;
-
-/* Functions of a sample. */
-static RefFieldPlace place_at(const RefSamples *samples, long p, double (*X)[3])
-{
-    long at = samples->start[p];
-    return (RefFieldPlace){(int)(samples->start[p + 1] - at), samples->node + at,
-                           (const double(*)[6])samples->part + at, (const double(*)[3])X, NULL};
-}
-
-static void balance_place(RefFieldPlace *place, double area, const Before *before, int fields,
-                          Balance *balance)
-{
-    for (int f = 0; f < fields; f++) {
-        double value[3];
-        place->u = (const double(*)[3])before->field[f];
-        ref_field_value(place, value);
-        for (int d = 0; d < 3; d++) balance->lost[f][d] += area * value[d];
-    }
-}
-
-static void balance_old(const RefSamples *old, const Before *before, int fields, Balance *balance)
-{
-    for (long p = 0; p < old->count; p++) {
-        RefFieldPlace place = place_at(old, p, before->X);
-        balance_place(&place, old->area[p], before, fields, balance);
-    }
-}
-
-/* What is left of the fields at a cell's samples. */
-static void add_residual(const RefCracked *cracked, long c, const RefSamples *old, Before *before,
-                         const RefCrackedFields *fields, Balance *balance)
-{
-    const RefSamples *samples = &cracked->cell[c].samples;
-    RefFieldNorm norm = {cracked->options.thickness, fields->mass_share, cracked->options.material};
-    for (long p = 0; p < samples->count; p++) {
-        double area = samples->area[p];
-        RefFieldSample sample = {samples->weight[p], area, samples->trace[p]};
-        RefFieldPlace new = place_at(samples, p, cracked->shell->X);
-        RefFieldPlace was =
-            old->count ? place_at(old, p, before->X)
-                       : place_before(cracked, cracked->cell[c].from, samples->theta[p], before);
-        if (!old->count) {
-            balance_place(&was, -area, before, fields->residuals, balance);
-            balance->area += new.count ? area : 0;
-            for (int n = 0; n < new.count; n++) balance->seen[new.node[n]] += area * new.part[n][0];
-        }
-        RefFrame frame[2] = {ref_field_frame(&was), ref_field_frame(&new)};
-        for (int f = 0; f < fields->residuals; f++) {
-            was.u = (const double(*)[3])before->field[f];
-            new.u = (const double(*)[3])fields->field[f];
-            ref_field_residual(&was, &new, frame, &sample, &norm,
-                               (double(*)[3])fields->residual[f]);
-        }
-    }
-}
-
-/* Spreads what sums have lost over the new cells. */
-static void spread_balance(const RefCracked *cracked, const RefCrackedFields *fields,
-                           const Balance *balance)
-{
-    double unit =
-        fields->mass_share * cracked->options.material.density * cracked->options.thickness;
-    for (int f = 0; balance->area > 0 && f < fields->residuals; f++)
-        for (long n = 0; n < 3 * cracked->shell->nodes.count; n++)
-            fields->residual[f][n] +=
-                unit * balance->seen[n / 3] * balance->lost[f][n % 3] / balance->area;
-}
-
 static void touch(const RefElement *element, unsigned char *touched)
 {
     for (int n = 0; n < element->count; n++) touched[element->node[n]] = 1;
 }
 
-/* Takes again what is not what it was; marks nodes whose rows change. */
+/* Takes again what is not what it was; marks nodes whose rows change. Samples that there were are
+ * kept in `before`. */
 static void remake_stale(RefCracked *cracked, const unsigned char *fresh, unsigned char *touched,
-                         Before *before, const RefCrackedFields *fields)
+                         RefFieldsBefore *before)
 {
     RefShell *shell = cracked->shell;
     RefShape shape = ref_shape_create(&shell->nodes), whole = ref_shape_create(&cracked->whole);
     RefThinWork work = ref_thin_work(shell->nodes.count);
-    int count = fields ? fields->residuals : 0;
-    Balance balance = {.lost = sm_alloc((size_t)count, sizeof(double[3])),
-                       .seen = sm_alloc((size_t)shell->nodes.count, sizeof(double))};
+    before->cells = shell->tree.count;
+    before->samples = sm_alloc((size_t)before->cells, sizeof *before->samples);
     for (long c = 0; c < shell->tree.count; c++) {
         RefCrackedCell *cell = cracked->cell + c;
-        RefSamples old = cell->samples;
+        const RefSamples *old = before->samples + c;
         bool was = cell->made;
         cell->again = false;
         if (was && terminal(cracked, c) && !is_stale(cracked, cell, fresh)) continue;
         touch(&cell->element, touched);
         ref_element_free(&cell->element);
+        before->samples[c] = cell->samples;
         cell->samples = (RefSamples){.count = 0};
         cell->made = false;
         cell->again = true;
-        if (terminal(cracked, c)) {
-            if (was) {
-                ref_samples_of(&shell->tree, c, &shell->nodes, shell->basis, &shape,
-                               &cell->samples);
-                memcpy(cell->samples.area, old.area, REF_SAMPLES_PER_CELL * sizeof *old.area);
-                memcpy(cell->samples.trace, old.trace, REF_SAMPLES_PER_CELL * sizeof *old.trace);
-            } else
-                take_samples(cracked, c, &shape, &whole, &cell->samples);
-            integrate(cracked, cell, &work);
-            touch(&cell->element, touched);
-            if (fields) add_residual(cracked, c, &old, before, fields, &balance);
-            cracked->counts.cells_again++;
-        } else {
+        if (!terminal(cracked, c)) {
             cell->nodes = 0;
-            balance_old(&old, before, count, &balance);
+            continue;
         }
-        ref_samples_free(&old);
+        if (was) {
+            ref_samples_of(&shell->tree, c, &shell->nodes, shell->basis, &shape, &cell->samples);
+            memcpy(cell->samples.area, old->area, REF_SAMPLES_PER_CELL * sizeof *old->area);
+            memcpy(cell->samples.trace, old->trace, REF_SAMPLES_PER_CELL * sizeof *old->trace);
+        } else
+            take_samples(cracked, c, &shape, &whole, &cell->samples);
+        integrate(cracked, cell, &work);
+        touch(&cell->element, touched);
+        cracked->counts.cells_again++;
     }
-    if (fields) spread_balance(cracked, fields, &balance);
-    sm_free_all(balance.lost, balance.seen);
     ref_thin_work_free(&work);
     ref_shape_free(&shape);
     ref_shape_free(&whole);
 }
 
-void ref_cracked_update(RefCracked *cracked, RefCrackedFields *fields)
+/* Room for new nodes; residuals are zero. */
+static void widen_fields(long before, long nodes, const RefCrackedFields *fields)
 {
-    RefShell *shell = cracked->shell;
-    long nodes = shell->nodes.count;
-    Before before = remember(cracked, fields);
-    cracked->counts = (RefCrackedCounts){.split = split_cells(cracked)};
-    unsigned char *fresh = move_nodes(cracked);
-    size_t size = 3 * (size_t)shell->nodes.count;
-    unsigned char *touched = sm_alloc(size, 1);
-    for (int f = 0; fields && f < fields->count; f++) {
-        fields->field[f] = sm_widen(fields->field[f], 3 * nodes, (long)size, sizeof(double), 0);
-    }
-    for (int f = 0; fields && f < fields->residuals; f++) {
+    size_t size = 3 * (size_t)nodes;
+    for (int f = 0; f < fields->count; f++)
+        fields->field[f] = sm_widen(fields->field[f], 3 * before, (long)size, sizeof(double), 0);
+    for (int f = 0; f < 2; f++) {
         fields->residual[f] = sm_realloc(fields->residual[f], size, sizeof(double));
         memset(fields->residual[f], 0, size * sizeof(double));
     }
-    memcpy(touched, fresh, (size_t)shell->nodes.count);
+}
+
+void ref_cracked_update(RefCracked *cracked, const RefCrackedFields *fields)
+{
+    RefShell *shell = cracked->shell;
+    RefFieldsBefore before = ref_fields_before(cracked, fields);
+    cracked->counts = (RefCrackedCounts){.split = split_cells(cracked)};
+    unsigned char *fresh = move_nodes(cracked);
+    unsigned char *touched = sm_copy(fresh, (size_t)shell->nodes.count, 1);
+    if (fields) widen_fields(before.nodes.count, shell->nodes.count, fields);
     fill_nodes(cracked, fresh, &before, fields);
-    remake_stale(cracked, fresh, touched, &before, fields);
+    remake_stale(cracked, fresh, touched, &before);
+    if (fields) ref_fields_residuals(cracked, &before, fields);
     add_up(cracked, touched);
     count_all(cracked);
     for (long n = 0; n < shell->nodes.count; n++) /* nodes that nothing sees are at rest */
         for (int f = 0; fields && f < fields->count && !(cracked->rows.row[n].sum[0][0] > 0); f++)
             memset(fields->field[f] + 3 * n, 0, sizeof(double[3]));
     ref_cracks_settle(&cracked->cracks);
-    forget(fields, &before);
+    ref_fields_before_free(&before);
     sm_free_all(fresh, touched);
 }
 
@@ -640,10 +476,10 @@ RefCrackedSaved ref_cracked_save(const RefCracked *cracked)
     size_t cells = (size_t)shell->tree.count;
     RefCrackedSaved saved = {.cells = shell->tree.count,
                              .leaves = shell->tree.leaves,
-                             .tree = copy_of(shell->tree.cell, cells, sizeof *shell->tree.cell),
-                             .cell = copy_of(cracked->cell, cells, sizeof *cracked->cell),
-                             .nodes = copy_nodes(&shell->nodes),
-                             .X = copy_of(shell->X, (size_t)shell->nodes.count, sizeof *shell->X),
+                             .tree = sm_copy(shell->tree.cell, cells, sizeof *shell->tree.cell),
+                             .cell = sm_copy(cracked->cell, cells, sizeof *cracked->cell),
+                             .nodes = ref_nodes_copy(&shell->nodes),
+                             .X = sm_copy(shell->X, (size_t)shell->nodes.count, sizeof *shell->X),
                              .cracks = ref_cracks_settled(&cracked->cracks)};
     for (size_t c = 0; c < cells; c++) {
         saved.cell[c].samples = (RefSamples){.count = 0};

@@ -66,20 +66,20 @@ void ref_cracked_free(RefCracked *cracked);
 
 /* Fields of the shell, [3 nodes] each, that go on when its functions change. */
 typedef struct {
-    double mass_share; /* m, above 0 */
-    int count;
-    double **field;    /* [count] the caller's, allocated with sm_alloc() */
-    int residuals;     /* of the first so many fields, */
-    double **residual; /* [residuals] likewise, or NULL at first */
+    int count;         /* 2 or more */
+    double **field;    /* [count] the caller's, allocated with sm_alloc(): displacements,
+                          velocities, and others */
+    double **residual; /* [2] of the first two, likewise, or NULL at first */
 } RefCrackedFields;
 
 /* After cracks were grown: makes again what that changes, and settles the cracks. A field's nodes
  * keep their parameters, and new ones have what the field was there; what is left of the old field
- * is written to `residual`, so that field + (K + m M)^-1 residual is its projection in the norm of
- * K + m M: this is hardly longer than the field was (samples of cells that were split are others),
- * and the field's sum over the mass, of a velocity the momentum, stays what it was, but for samples
- * that see no node any more, whose mass is gone. `fields` may be NULL. */
-void ref_cracked_update(RefCracked *cracked, RefCrackedFields *fields);
+ * is written to `residual`, so that displacements + K^-1 residual and velocities + M^-1 residual
+ * are its projections in the norms of both energies, which are no longer than the field was
+ * (field_transfer.h): energies do not grow and momentum stays, but for samples that see no node
+ * any more, whose mass is gone, and by what areas of a cell's samples and of its parts' differ.
+ * `fields` may be NULL. */
+void ref_cracked_update(RefCracked *cracked, const RefCrackedFields *fields);
 
 /* What an update changes. */
 typedef struct {

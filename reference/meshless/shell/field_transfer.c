@@ -1,69 +1,211 @@
 #include "field_transfer.h"
 
+#include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
-void ref_field_value(const RefFieldPlace *place, double value[3])
+#include "../../../lib/vector.h"
+#include "field_place.h"
+
+/* What a sample has of the fields: both energies are sums of squares. */
+typedef struct {
+    double root[6], velocity[3];
+} Seen;
+
+/* Sums over the samples of a cell. */
+typedef struct {
+    double area, squares, momentum[3], energy;
+} Sums;
+
+/* Of a cell that was split: over its samples, and over those of its parts. */
+typedef struct {
+    Sums was, is;
+} Balance;
+
+RefFieldsBefore ref_fields_before(const RefCracked *cracked, const RefCrackedFields *fields)
 {
-    memset(value, 0, sizeof(double[3]));
-    for (int n = 0; n < place->count; n++)
-        for (int d = 0; d < 3; d++) value[d] += place->part[n][0] * place->u[place->node[n]][d];
+    const RefShell *shell = cracked->shell;
+    size_t nodes = (size_t)shell->nodes.count;
+    RefFieldsBefore before = {.nodes = ref_nodes_copy(&shell->nodes),
+                              .X = sm_copy(shell->X, nodes, sizeof(double[3])),
+                              .fields = fields ? fields->count : 0};
+    before.nodes.cut.pass = ref_cracks_passed;
+    before.shape = ref_shape_create(&before.nodes);
+    before.part = sm_alloc((size_t)before.nodes.most, sizeof *before.part);
+    before.field = sm_alloc((size_t)before.fields, sizeof *before.field);
+    for (int f = 0; f < before.fields; f++)
+        before.field[f] = sm_copy(fields->field[f], nodes, sizeof(double[3]));
+    return before;
 }
 
-void ref_field_strains(const RefFieldPlace *place, const RefFrame *frame, double strain[6])
+void ref_fields_before_free(RefFieldsBefore *before)
 {
-    double B[6][3];
-    memset(strain, 0, sizeof(double[6]));
-    for (int n = 0; n < place->count; n++) {
-        const double *u = place->u[place->node[n]];
-        ref_thin_strains(frame, place->part[n], B);
-        for (int i = 0; i < 6; i++)
-            for (int d = 0; d < 3; d++) strain[i] += B[i][d] * u[d];
-    }
+    for (int f = 0; f < before->fields; f++) free(before->field[f]);
+    for (long c = 0; c < before->cells; c++) ref_samples_free(before->samples + c);
+    ref_nodes_free(&before->nodes);
+    ref_shape_free(&before->shape);
+    sm_free_all(before->X, before->part, before->field, before->samples);
+    *before = (RefFieldsBefore){.fields = 0};
 }
 
-RefFrame ref_field_frame(const RefFieldPlace *place)
+/* A place among the functions that there were, of the cell that was terminal then. */
+static RefFieldPlace place_before(const RefCracked *cracked, long cell, const double theta[3],
+                                  RefFieldsBefore *before)
 {
-    return ref_middle_at(place->X, place->count, place->node, place->part);
+    const RefShell *shell = cracked->shell;
+    RefShape *shape = &before->shape;
+    double edge = ref_quadtree_edge(&shell->tree, shell->tree.cell + cell);
+    ref_samples_shape(&before->nodes, shell->basis, edge, theta, shape);
+    for (int n = 0; n < shape->count; n++) ref_samples_part(shape, n, before->part[n]);
+    return (RefFieldPlace){shape->count, shape->node, (const double(*)[6])before->part,
+                           (const double(*)[3])before->X, NULL};
 }
 
-/* Forces that belong to strains, times the area. */
-static void stress_of(const RefFrame *frame, const double strain[6], double area,
-                      const RefFieldNorm *norm, double stress[6])
+/* The field there, and a quarter a split of what the parameters of the cell that was split were
+ * above it. */
+void ref_fields_place(const RefCracked *cracked, const RefCrackedCell *cell, int node,
+                      RefFieldsBefore *before, const RefCrackedFields *fields)
 {
-    double H[3][3], nu = norm->material.poisson, t = norm->thickness;
-    double membrane = area * norm->material.young * t / (1 - nu * nu);
-    ref_thin_law(frame->inverse, nu, H);
-    for (int i = 0; i < 6; i++) {
-        double sum = 0;
-        for (int j = 0; j < 3; j++) sum += H[i % 3][j] * strain[i / 3 * 3 + j];
-        stress[i] = (i < 3 ? membrane : membrane * t * t / 12) * sum;
-    }
-}
-
-void ref_field_residual(const RefFieldPlace *old, const RefFieldPlace *new, const RefFrame frame[2],
-                        const RefFieldSample *sample, const RefFieldNorm *norm,
-                        double (*residual)[3])
-{
-    double value[2][3], strain[2][6], stress[6] = {0}, B[6][3];
-    double area = sample->area, whole = area / sample->weight;
-    bool stiff = ref_thin_is_stiff(frame + 1, whole, sample->trace);
-    if (old->count == 0 || new->count == 0) return;
-    ref_field_value(old, value[0]);
-    ref_field_value(new, value[1]);
-    ref_field_strains(old, frame, strain[0]);
-    ref_field_strains(new, frame + 1, strain[1]);
-    bool was_stiff = ref_thin_is_stiff(frame, whole, sample->trace);
-    double scale = frame[1].area / frame[0].area; /* strains count by the metric they are of */
-    for (int i = 0; i < 6; i++)
-        strain[0][i] = (was_stiff ? scale * strain[0][i] : 0) - strain[1][i];
-    if (stiff) stress_of(frame + 1, strain[0], area, norm, stress);
-    double mass = norm->mass_share * norm->material.density * norm->thickness * area;
-    for (int n = 0; n < new->count; n++) {
-        double *sum = residual[new->node[n]];
-        if (stiff) ref_thin_strains(frame + 1, new->part[n], B);
-        for (int d = 0; d < 3; d++) {
-            sum[d] += mass * new->part[n][0] * (value[0][d] - value[1][d]);
-            for (int i = 0; stiff && i < 6; i++) sum[d] += B[i][d] * stress[i];
+    const RefCrackedCell *from = cracked->cell + cell->from;
+    int parent = from->node[0];
+    double share = ldexp(1, -2 * (cell->splits - from->splits));
+    const double *at[2] = {cracked->shell->nodes.position[node], before->nodes.position[parent]};
+    for (int f = 0; f < fields->count; f++)
+        for (int d = 0; d < 3; d++)
+            fields->field[f][3 * (long)node + d] = share * before->field[f][parent][d];
+    for (int k = 0; k < 2; k++) {
+        RefFieldPlace place = place_before(cracked, cell->from, at[k], before);
+        for (int f = 0; f < fields->count; f++) {
+            double value[3];
+            place.u = (const double(*)[3])before->field[f];
+            ref_field_value(&place, value);
+            for (int d = 0; d < 3; d++)
+                fields->field[f][3 * (long)node + d] += k ? -share * value[d] : value[d];
         }
     }
+}
+
+/* What a sample of this area, and this trace before any crack, has; where the functions there are
+ * not stiff, no strains. */
+static Seen see(RefFieldPlace place, const RefFrame *frame, bool stiff,
+                const RefShellOptions *options, const double *u, const double *v)
+{
+    Seen seen = {.velocity = {0}};
+    place.u = (const double(*)[3])u;
+    if (stiff) ref_field_root(&place, frame, options->thickness, &options->material, seen.root);
+    place.u = (const double(*)[3])v;
+    ref_field_value(&place, seen.velocity);
+    return seen;
+}
+
+static bool is_stiff(const RefSamples *samples, long p, const RefFrame *frame)
+{
+    return ref_thin_is_stiff(frame, samples->area[p] / samples->weight[p], samples->trace[p]);
+}
+
+/* What there was at sample p of `samples`, of functions that there were. */
+static Seen seen_before(const RefCracked *cracked, RefFieldPlace place, const RefSamples *samples,
+                        long p, const RefFieldsBefore *before)
+{
+    RefFrame frame = ref_field_frame(&place);
+    bool stiff = place.count > 0 && is_stiff(samples, p, &frame);
+    return see(place, &frame, stiff, &cracked->options, *before->field[0], *before->field[1]);
+}
+
+static void add_seen(const Seen *seen, double area, Sums *sums)
+{
+    sums->area += area;
+    sums->squares += area * sm_dot(seen->velocity, seen->velocity);
+    for (int d = 0; d < 3; d++) sums->momentum[d] += area * seen->velocity[d];
+    for (int i = 0; i < 6; i++) sums->energy += area * seen->root[i] * seen->root[i];
+}
+
+/* Sums of squares about the mean. */
+static double variance(const Sums *sums)
+{
+    return sums->squares - sm_dot(sums->momentum, sums->momentum) / sums->area;
+}
+
+/* What samples of a cell's parts are to have, so that they have the cell's momentum, and no more
+ * energy: strains and what velocities differ by from their mean are made smaller. */
+static Seen adjusted(const Seen *seen, const Balance *balance)
+{
+    const Sums *was = &balance->was, *is = &balance->is;
+    Seen changed = *seen;
+    double strained = is->energy > was->energy ? sqrt(was->energy / is->energy) : 1;
+    double varied = variance(was) < variance(is) ? sqrt(fmax(variance(was), 0) / variance(is)) : 1;
+    for (int i = 0; i < 6; i++) changed.root[i] *= strained;
+    for (int d = 0; d < 3; d++)
+        changed.velocity[d] =
+            (was->momentum[d] + varied * (is->area * seen->velocity[d] - is->momentum[d])) /
+            is->area;
+    return changed;
+}
+
+/* What samples of new cells have of the old fields, cell by cell, and the sums over cells that were
+ * split. */
+static Seen *see_parts(const RefCracked *cracked, RefFieldsBefore *before, Balance *balance)
+{
+    long parts = 0, cells = before->cells;
+    for (long c = 0; c < cells; c++)
+        parts += cracked->cell[c].again && before->samples[c].count == 0
+                     ? cracked->cell[c].samples.count
+                     : 0;
+    Seen *part = sm_alloc((size_t)parts, sizeof *part), *next = part;
+    for (long c = 0; c < cells; c++) {
+        const RefCrackedCell *cell = cracked->cell + c;
+        const RefSamples *old = before->samples + c;
+        for (long p = 0; !cell->made && p < old->count; p++) {
+            RefFieldPlace place = ref_field_sample(old, p, (const double(*)[3])before->X);
+            Seen seen = seen_before(cracked, place, old, p, before);
+            add_seen(&seen, old->area[p], &balance[c].was);
+        }
+        for (long p = 0; cell->again && old->count == 0 && p < cell->samples.count; p++) {
+            RefFieldPlace place = place_before(cracked, cell->from, cell->samples.theta[p], before);
+            *next = seen_before(cracked, place, &cell->samples, p, before);
+            add_seen(next++, cell->samples.area[p], &balance[cell->from].is);
+        }
+    }
+    return part;
+}
+
+/* What is left of the fields at a sample. */
+static void add_residual(const RefCracked *cracked, const RefSamples *samples, long p,
+                         const Seen *seen, const RefCrackedFields *fields)
+{
+    const RefShellOptions *options = &cracked->options;
+    double area = samples->area[p], mass = options->material.density * options->thickness * area;
+    RefFieldPlace place = ref_field_sample(samples, p, (const double(*)[3])cracked->shell->X);
+    RefFrame frame = ref_field_frame(&place);
+    bool stiff = place.count > 0 && is_stiff(samples, p, &frame);
+    Seen left = see(place, &frame, stiff, options, fields->field[0], fields->field[1]);
+    for (int i = 0; i < 6; i++) left.root[i] = seen->root[i] - left.root[i];
+    if (stiff)
+        ref_field_pull(&place, &frame, options->thickness, &options->material, left.root, area,
+                       (double(*)[3])fields->residual[0]);
+    for (int n = 0; n < place.count; n++)
+        for (int d = 0; d < 3; d++)
+            fields->residual[1][3 * (long)place.node[n] + d] +=
+                mass * place.part[n][0] * (seen->velocity[d] - left.velocity[d]);
+}
+
+void ref_fields_residuals(const RefCracked *cracked, RefFieldsBefore *before,
+                          const RefCrackedFields *fields)
+{
+    Balance *balance = sm_alloc((size_t)before->cells, sizeof *balance);
+    Seen *part = see_parts(cracked, before, balance), *next = part;
+    for (long c = 0; c < before->cells; c++) {
+        const RefCrackedCell *cell = cracked->cell + c;
+        const RefSamples *old = before->samples + c;
+        for (long p = 0; cell->again && p < cell->samples.count; p++) {
+            Seen seen;
+            if (old->count) {
+                RefFieldPlace place = ref_field_sample(old, p, (const double(*)[3])before->X);
+                seen = seen_before(cracked, place, old, p, before);
+            } else
+                seen = adjusted(next++, balance + cell->from);
+            add_residual(cracked, &cell->samples, p, &seen, fields);
+        }
+    }
+    sm_free_all(balance, part);
 }

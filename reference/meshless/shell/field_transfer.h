@@ -1,46 +1,40 @@
-/* field_transfer.h - a shell's fields, such as displacements, from functions that it had to those
- * that it has. */
+/* field_transfer.h - how displacements and velocities of a cracked shell go on when its functions
+ * change (cracked.h).
+ *
+ * They are projected onto the new functions: displacements so that strains are off by least, in the
+ * norm of the elastic energy, velocities so that they themselves are, in that of the kinetic
+ * energy. A projection is never longer than what is projected, so that neither energy grows, and
+ * constants being among the functions, momentum stays. Both norms are sums over samples. Where a
+ * cell was split its samples are others: what they have of the old fields is made to have the sums
+ * that the cell had. */
 #ifndef REF_FIELD_TRANSFER_H
 #define REF_FIELD_TRANSFER_H
 
-#include "thin.h"
+#include "cracked.h"
 
-/* The functions of one place: nodes and parts as RefSamples has them, and the parameters that the
- * middle surface and a field have, [nodes][3]. */
+/* The functions and fields that a shell had. */
 typedef struct {
-    int count;
-    const int *node;
-    const double (*part)[6];
-    const double (*X)[3];
-    const double (*u)[3];
-} RefFieldPlace;
+    RefNodes nodes;
+    double (*X)[3];
+    int fields;
+    double (**field)[3];
+    RefShape shape;
+    double (*part)[6];   /* of `shape` */
+    long cells;          /* of the tree as it became, */
+    RefSamples *samples; /* [cells] and what cells had that have others now; else empty */
+} RefFieldsBefore;
 
-/* What a field is multiplied by when it is compared: the energy's law, and m times the mass. */
-typedef struct {
-    double thickness, mass_share;
-    RefMaterial material;
-} RefFieldNorm;
+/* Before functions change, but after cracks were grown. `fields` may be NULL: none. The caller
+ * frees. */
+RefFieldsBefore ref_fields_before(const RefCracked *cracked, const RefCrackedFields *fields);
+void ref_fields_before_free(RefFieldsBefore *before);
 
-/* The middle surface at a place. */
-RefFrame ref_field_frame(const RefFieldPlace *place);
+/* All fields' parameters at a new node of a cell. */
+void ref_fields_place(const RefCracked *cracked, const RefCrackedCell *cell, int node,
+                      RefFieldsBefore *before, const RefCrackedFields *fields);
 
-/* A field's strains at a place (thin.h), whose surface the frame is. */
-void ref_field_strains(const RefFieldPlace *place, const RefFrame *frame, double strain[6]);
-
-/* A field's value at a place. */
-void ref_field_value(const RefFieldPlace *place, double value[3]);
-
-/* Of a sample: its area in the plane; on the surface before any crack; the trace (samples.h). */
-typedef struct {
-    double weight, area, trace;
-} RefFieldSample;
-
-/* Adds to `residual`, of the new nodes' parameters, the sum over one sample of
- *     B^T D (strains of the old field - of the new) + m rho t phi (old field - new),
- * B, phi and D those of the new functions; `frame` are both places'. Where the new ones leave the
- * surface without an area, the second part alone. */
-void ref_field_residual(const RefFieldPlace *old, const RefFieldPlace *new, const RefFrame frame[2],
-                        const RefFieldSample *sample, const RefFieldNorm *norm,
-                        double (*residual)[3]);
+/* The residuals, once all samples are those of the new functions. */
+void ref_fields_residuals(const RefCracked *cracked, RefFieldsBefore *before,
+                          const RefCrackedFields *fields);
 
 #endif

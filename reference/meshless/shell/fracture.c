@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "../../../lib/vector.h"
-#include "field_transfer.h"
+#include "field_place.h"
 
 /* Samples of a cell in the middles of its quarters. */
 static const int quarter[4] = {7, 10, 25, 28};
@@ -39,10 +39,8 @@ static RefFaceStress stress_at(const RefCracked *cracked, const RefSamples *samp
                                const double (*u)[3])
 {
     const RefShellOptions *options = &cracked->options;
-    long from = samples->start[p];
-    RefFieldPlace place = {(int)(samples->start[p + 1] - from), samples->node + from,
-                           (const double(*)[6])(samples->part + from),
-                           (const double(*)[3])cracked->shell->X, u};
+    RefFieldPlace place = ref_field_sample(samples, p, (const double(*)[3])cracked->shell->X);
+    place.u = u;
     double strain[6], H[3][3], nu = options->material.poisson;
     RefFrame frame = ref_field_frame(&place);
     RefFaceStress face[2] = {{.theta = {samples->theta[p][0], samples->theta[p][1]}}};

@@ -8,6 +8,7 @@
 #include "../../../lib/vector.h"
 #include "../motion/rotation.h"
 #include "../solve/least_squares.h"
+#include "projection.h"
 
 #define CONST(array) ((const double(*)[3])(array))
 
@@ -351,16 +352,19 @@ SmCode ref_sheet_hold(RefSheet *sheet, int grips, const RefSheetGrip *grip, SmEr
     return SM_OK;
 }
 
-SmCode ref_sheet_renew(RefSheet *sheet, const double *u, const double *v, const double *moved,
-                       SmError *error)
+SmCode ref_sheet_renew(RefSheet *sheet, double *u, double *v, const double *moved,
+                       double *const residual[2], SmError *error)
 {
+    double share = ref_steps_mass_share(&sheet->options.damping, sheet->options.h);
     size_t size = 3 * (size_t)sheet->shell.nodes.count * sizeof(double);
     RefWarp warp;
     RefSteps steps;
     SmCode code = ref_warp_create(&sheet->shell, &warp, error);
     if (code != SM_OK) return code;
-    code = ref_steps_create(&sheet->shell.matrices, &sheet->options.damping, sheet->options.h, NULL,
-                            &steps, error);
+    code = ref_project_fields(&sheet->shell.matrices, &warp, share, residual, u, v, error);
+    if (code == SM_OK)
+        code = ref_steps_create(&sheet->shell.matrices, &sheet->options.damping, sheet->options.h,
+                                NULL, &steps, error);
     if (code != SM_OK) {
         ref_warp_free(&warp);
         return code;

@@ -81,10 +81,11 @@ void ref_sheet_step(RefSheet *sheet);
 void ref_sheet_pose(RefSheet *sheet);
 
 /* After the shell has changed (cracked.h): its new nodes have these displacements, velocities and
- * places, [3 nodes] each. Nothing is held then. Two factorisations. ref_sheet_anchor() is to
- * follow. Errors, and nothing changed: solver.h's. */
-SmCode ref_sheet_renew(RefSheet *sheet, const double *u, const double *v, const double *moved,
-                       SmError *error);
+ * places, [3 nodes] each, of which the first two are projected by their residuals. Nothing is held
+ * then. Four factorisations. ref_sheet_anchor() is to follow. Errors, and nothing of the sheet
+ * changed: solver.h's. */
+SmCode ref_sheet_renew(RefSheet *sheet, double *u, double *v, const double *moved,
+                       double *const residual[2], SmError *error);
 
 /* Every piece's displacements are what its nodes move by on average, and the surface is posed. */
 void ref_sheet_anchor(RefSheet *sheet);

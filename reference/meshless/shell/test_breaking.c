@@ -101,7 +101,7 @@ TEST(what_cannot_be_followed_has_not_happened)
     static Strip strip[2];
     bool changed[2], again;
     for (int k = 0; k < 2; k++) {
-        strip_create(false, 20, strip + k);
+        strip_create(false, 14, strip + k);
         cut(strip + k, 1.9, 0.3);
         double(*v)[3] = (double(*)[3])strip[k].sheet.steps.v;
         for (long n = 0; n < strip[k].sheet.warp.nodes; n++)

@@ -1,5 +1,6 @@
 /* Shells whose cracks grow: what is made again step by step beside what is made at once. */
 #include "cracked.h"
+#include "projection.h"
 #include "steps.h"
 #include "test_charts.h"
 #include "test_shell.h"
@@ -374,28 +375,22 @@ static void momentum_of(const RefShell *shell, const double *v, double momentum[
     free(y);
 }
 
-/* Updates the shell and projects two fields, u and v, onto its new functions. */
+/* Updates the shell and projects displacements u and velocities v onto its new functions. */
 static void update(Sheet *sheet, double m, double **u, double **v)
 {
     double *field[2] = {*u, *v}, *residual[2] = {NULL, NULL};
-    RefCrackedFields fields = {
-        .mass_share = m, .count = 2, .field = field, .residuals = 2, .residual = residual};
-    RefSolver *solver;
+    const RefCrackedFields fields = {.count = 2, .field = field, .residual = residual};
+    RefWarp warp;
     SmError error = {0};
     ref_cracked_update(&sheet->cracked, &fields);
-    size_t size = 3 * (size_t)sheet->shell.nodes.count;
-    double *change = sm_alloc(size, sizeof *change);
-    if (ref_solver_create(&sheet->shell.matrices, -m, NULL, &solver, &error) != SM_OK)
+    if (ref_warp_create(&sheet->shell, &warp, &error) != SM_OK ||
+        ref_project_fields(&sheet->shell.matrices, &warp, m, residual, field[0], field[1],
+                           &error) != SM_OK)
         fail_msg("%s", error.text);
-    for (int f = 0; f < 2; f++) {
-        ref_solver_solve(solver, residual[f], NULL, change);
-        for (size_t n = 0; n < size; n++) field[f][n] += change[n];
-        free(residual[f]);
-    }
     *u = field[0];
     *v = field[1];
-    ref_solver_destroy(solver);
-    free(change);
+    ref_warp_free(&warp);
+    sm_free_all(residual[0], residual[1]);
 }
 
 /* Waves over the shell's place in rest. */
@@ -409,8 +404,8 @@ static double *wavy_field(const RefShell *shell)
     return field;
 }
 
-/* But for what cracks do to the surface in rest, and what a cell's samples say of a field that its
- * parts' samples do not. */
+/* Velocities' squares are over the mass of new samples, which is another one by what the areas of a
+ * cell's samples and of its parts' differ. */
 TEST(new_functions_keep_momentum_and_add_no_energy)
 {
     needs_solver();
@@ -420,23 +415,22 @@ TEST(new_functions_keep_momentum_and_add_no_energy)
         random_sheet(trial % 2, trial < 2 ? 0 : 0.7, &sheet);
         double step = half_cell(&sheet.chart), m = pow(10, random_between(&seed, 2, 5));
         double *u = wavy_field(&sheet.shell), *v = wavy_field(&sheet.shell);
-        const double more = 1.15; /* the worst of 400 such updates: 1.09 */
         for (int n = 0; n < 5; n++) {
-            double before[3], after[3], energy[2], speed = 0;
+            double before[3], after[3], energy[2];
             momentum_of(&sheet.shell, v, before);
-            energy[0] = energy_of(&sheet.shell, 1, m, u);
-            energy[1] = energy_of(&sheet.shell, 1, m, v);
+            energy[0] = energy_of(&sheet.shell, 1, 0, u);
+            energy[1] = energy_of(&sheet.shell, 0, 1, v);
             random_growth(&sheet.cracked.cracks, step);
             if (n % 2 == 0) random_start(&sheet.cracked.cracks, step);
             update(&sheet, m, &u, &v);
             momentum_of(&sheet.shell, v, after);
-            speed = sqrt(energy_of(&sheet.shell, 0, 1, v));
+            double kinetic = energy_of(&sheet.shell, 0, 1, v);
             bool blind = sheet.cracked.counts.blind > 0; /* whose mass is gone */
             kept += !blind;
             for (int d = 0; d < 3 && !blind; d++)
-                assert_true(fabs(after[d] - before[d]) < 1e-9 * speed);
-            assert_true(energy_of(&sheet.shell, 1, m, u) < energy[0] * more);
-            assert_true(energy_of(&sheet.shell, 1, m, v) < energy[1] * more);
+                assert_true(fabs(after[d] - before[d]) < 1e-9 * sqrt(kinetic));
+            assert_true(energy_of(&sheet.shell, 1, 0, u) < energy[0] * (1 + 1e-6));
+            assert_true(kinetic < energy[1] * (1 + 1e-3));
         }
         free(u);
         free(v);

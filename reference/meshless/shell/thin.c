@@ -21,9 +21,7 @@ void ref_thin_law(const double g[3], double nu, double H[3][3])
     H[1][2] = H[2][1] = g[1] * g[2];
 }
 
-/* The upper factor G of H = G^T G, H the constitutive matrix for vectors (11, 22, 2 x 12), of the
- * inverse metric (11, 22, 12). */
-static void factor_of(const double g[3], double nu, double G[3][3])
+void ref_thin_factor(const double g[3], double nu, double G[3][3])
 {
     double H[3][3];
     ref_thin_law(g, nu, H);
@@ -95,7 +93,7 @@ static bool write_sample(const double (*X)[3], const RefSamples *samples, long p
     for (int e = 0; e < count; e++)
         work->shape[sample * columns_for(nodes) + work->number[node[e]]] += root * part[e][0];
     if (!stiff) return false;
-    factor_of(frame.inverse, nu, G);
+    ref_thin_factor(frame.inverse, nu, G);
     for (int e = 0; e < count; e++) {
         ref_thin_strains(&frame, part[e], B);
         add_rows((const double(*)[3])B, (const double(*)[3])G, weight, columns,

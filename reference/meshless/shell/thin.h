@@ -53,6 +53,9 @@ void ref_thin_strains(const RefFrame *frame, const double part[6], double B[6][3
 /* What strains are multiplied by under the integral, H as rows of (11, 22, 12). */
 void ref_thin_law(const double inverse[3], double poisson, double H[3][3]);
 
+/* G of H = G^T G, upper triangular: the squares of G times strains are the energy. */
+void ref_thin_factor(const double inverse[3], double poisson, double G[3][3]);
+
 /* Of a shell of this thickness, over the samples, whose areas it fills in. Neither rotary inertia
  * nor drilling stiffness. The caller frees. Errors: matrices.h's of a material; SM_USAGE, a
  * thickness that is not above 0; SM_INPUT, a surface without area at a sample. `soft` receives how

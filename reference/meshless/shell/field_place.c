@@ -1,0 +1,74 @@
+#include "field_place.h"
+
+#include <math.h>
+#include <string.h>
+
+RefFieldPlace ref_field_sample(const RefSamples *samples, long p, const double (*X)[3])
+{
+    long at = samples->start[p];
+    return (RefFieldPlace){(int)(samples->start[p + 1] - at), samples->node + at,
+                           (const double(*)[6])samples->part + at, X, NULL};
+}
+
+RefFrame ref_field_frame(const RefFieldPlace *place)
+{
+    return ref_middle_at(place->X, place->count, place->node, place->part);
+}
+
+void ref_field_value(const RefFieldPlace *place, double value[3])
+{
+    memset(value, 0, sizeof(double[3]));
+    for (int n = 0; n < place->count; n++)
+        for (int d = 0; d < 3; d++) value[d] += place->part[n][0] * place->u[place->node[n]][d];
+}
+
+void ref_field_strains(const RefFieldPlace *place, const RefFrame *frame, double strain[6])
+{
+    double B[6][3];
+    memset(strain, 0, sizeof(double[6]));
+    for (int n = 0; n < place->count; n++) {
+        const double *u = place->u[place->node[n]];
+        ref_thin_strains(frame, place->part[n], B);
+        for (int i = 0; i < 6; i++)
+            for (int d = 0; d < 3; d++) strain[i] += B[i][d] * u[d];
+    }
+}
+
+/* Roots of the membrane's and the bending stiffness. */
+static void stiffness_of(double t, const RefMaterial *material, double weight[2])
+{
+    double nu = material->poisson;
+    weight[0] = sqrt(material->young * t / (1 - nu * nu));
+    weight[1] = weight[0] * t / sqrt(12);
+}
+
+void ref_field_root(const RefFieldPlace *place, const RefFrame *frame, double thickness,
+                    const RefMaterial *material, double root[6])
+{
+    double strain[6], G[3][3], weight[2];
+    ref_field_strains(place, frame, strain);
+    ref_thin_factor(frame->inverse, material->poisson, G);
+    stiffness_of(thickness, material, weight);
+    for (int i = 0; i < 6; i++) {
+        double sum = 0;
+        for (int j = i % 3; j < 3; j++) sum += G[i % 3][j] * strain[i / 3 * 3 + j];
+        root[i] = weight[i / 3] * sum;
+    }
+}
+
+void ref_field_pull(const RefFieldPlace *place, const RefFrame *frame, double thickness,
+                    const RefMaterial *material, const double root[6], double area,
+                    double (*force)[3])
+{
+    double stress[6] = {0}, B[6][3], G[3][3], weight[2];
+    ref_thin_factor(frame->inverse, material->poisson, G);
+    stiffness_of(thickness, material, weight);
+    for (int i = 0; i < 6; i++)
+        for (int j = i % 3; j < 3; j++)
+            stress[i / 3 * 3 + j] += area * weight[i / 3] * G[i % 3][j] * root[i];
+    for (int n = 0; n < place->count; n++) {
+        ref_thin_strains(frame, place->part[n], B);
+        for (int i = 0; i < 6; i++)
+            for (int d = 0; d < 3; d++) force[place->node[n]][d] += B[i][d] * stress[i];
+    }
+}
