@@ -11,10 +11,10 @@ the same nodes, masses and gravity, and the stiffness with which it sags as much
   ms/s            milliseconds for a simulated second, at the step that stands beside it
   deviation %     how far its nodes at rest are from those of the elastic reference (engine meshless) that sags as much,
                   rms, of the beam's length
-Comparable: nodes, masses, gravity, static sag, machine, one thread. Not comparable: Bullet's elements are implicit and
-keep their stiffness at any step, the engines' and the clusters' stiffness goes with 1/step^2; damping; collisions, which
-are off. FILE.h5 (results/README.md) is for `shapebench report`.
-Exit codes: 0 done; 2 usage; 3 Bullet (libbullet-dev, g++) or the library is not there; 4 FILE.h5 cannot be written."""
+What is comparable and what is not stands below the table and in FILE.h5 (results/README.md), which is for `shapebench
+tables --baselines` and for `shapebench report`.
+Exit codes: 0 done; 2 usage; 3 Bullet (libbullet-dev, g++), the library or the program is not there; 4 FILE.h5 cannot be
+written."""
 import argparse
 import csv
 import io
@@ -34,11 +34,15 @@ ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), ".."))
 sys.path.insert(0, os.path.join(ROOT, "lib", "python"))
 sys.path.insert(1, os.path.join(ROOT, "scripts", "report"))
 import draft
+import stored
 os.environ.setdefault("SHAPEBENCH_LIBRARY", os.path.join(ROOT, "build", "libshapebench.so"))
 os.environ["OMP_NUM_THREADS"] = "1"
 
 DENSITY, THICK, TIMED, MOST_ITERATIONS = 1000.0, 0.1, 100, 64
 STORED = ("method", "stiffness", "step", "sag_percent", "ms_step", "ns_node_step", "ms_second", "deviation_percent")
+COMPARABLE = "nodes, masses, gravity, machine, one thread, and stiffness where the sag is the same"
+NOT_COMPARABLE = ("finite elements are implicit and keep their stiffness at any step, while that of FastLSM and of clusters "
+                  "goes with 1/step^2; damping; collisions, which are off")
 COLUMNS = ("method", "stiffness", "step s", "sag %", "ms/step", "ns/node/step", "ms/s", "deviation %")
 
 
@@ -240,33 +244,37 @@ def write(rows, form, file):
             file.write(("| " + " | ".join(line) + " |" if form == "markdown" else "  ".join(line).rstrip()) + "\n")
 
 
-def processor():
-    with open("/proc/cpuinfo", encoding="utf-8") as file:
-        return next((line.split(":", 1)[1].strip() for line in file if line.startswith("model name")), "unknown")
+def environment():
+    """The machine, and what was built: as every result file has it. Raises OSError and CalledProcessError."""
+    program = os.path.join(os.path.dirname(os.environ["SHAPEBENCH_LIBRARY"]), "shapebench")
+    said = subprocess.run([program, "info", "--format", "json"], stdout=subprocess.PIPE, check=True).stdout
+    command = " ".join(["baselines.py"] + sys.argv[1:])
+    return json.loads(said)["environment"] | {"threads": 1, "command": command[:1000]}
 
 
-def git(*words):
-    done = subprocess.run(["git", "-C", ROOT, *words], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
-    return done.stdout.strip()
+def attributes(node, values):
+    """Texts of fixed length, and truth as a number: as every result file has them."""
+    for name, value in values.items():
+        if isinstance(value, str):
+            value = numpy.bytes_(value.encode())
+        node.attrs[name] = int(value) if isinstance(value, bool) else value
 
 
-def store(rows, plan, output, overwrite):
-    """The rows for reports, whole or not at all; raises draft.Refused and OSError."""
+def store(rows, plan, machine, output, overwrite):
+    """The rows for tables and reports, whole or not at all; raises draft.Refused and OSError."""
     import h5py
     room = io.BytesIO()
+    text = h5py.string_dtype("utf-8", 64)
     with h5py.File(room, "w") as h5:
-        h5.attrs.update({"kind": "shapebench baselines", "schema": 1})
-        machine, methods = h5.create_group("machine"), h5.create_group("methods")
-        machine.attrs.update({"cpu": processor(), "cores": os.cpu_count(), "threads": 1,
-                              "git_commit": git("rev-parse", "HEAD") or "unknown",
-                              "git_dirty": int(bool(git("status", "--porcelain"))),
-                              "utc": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())})
-        h5.create_group("plan").attrs.update(plan)
+        attributes(h5, {"kind": "shapebench baselines", "schema": 2, "checksum": stored.CHECKSUM_SAYS})
+        attributes(h5.create_group("machine"), machine)
+        attributes(h5.create_group("plan"), plan | {"comparable": COMPARABLE, "not_comparable": NOT_COMPARABLE})
+        methods = h5.create_group("methods")
         for name, column in zip(STORED, COLUMNS):
             values = [each[column] for each in rows]
-            methods[name] = numpy.array([value.encode() for value in values] if isinstance(values[0], str) else values)
+            methods.create_dataset(name, data=values, dtype=text if isinstance(values[0], str) else float)
     with draft.begun(output, overwrite) as file:
-        file.write(room.getvalue())
+        file.write(stored.with_checksum(room.getvalue()))
 
 
 def main(arguments):
@@ -285,16 +293,20 @@ def main(arguments):
     try:
         import shapebench as sb
         sb.engines()
-    except (ImportError, OSError) as reason:
-        return missing(f"{reason}; scripts/run builds the library")
+        machine = environment()
+    except (ImportError, OSError, subprocess.CalledProcessError) as reason:
+        return missing(f"{reason}; cmake --build build makes the library and the program")
     build_adapter()
     try:
         if options.output:
             draft.check(options.output, options.overwrite)  # before what takes minutes
         rows, plan = measure(sb, options)
         write(rows, options.format, sys.stdout)
+        if options.format in ("text", "markdown"):
+            print(f"\nComparable: {COMPARABLE}.\n" + "\n" * (options.format == "markdown")
+                  + f"Not comparable: {NOT_COMPARABLE}.", flush=True)
         if options.output:
-            store(rows, plan, options.output, options.overwrite)
+            store(rows, plan, machine, options.output, options.overwrite)
     except (draft.Refused, OSError) as reason:
         print(f"baselines.py: {reason}", file=sys.stderr)
         return 4

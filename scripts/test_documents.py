@@ -138,7 +138,7 @@ def furnish(folder):
     write_ball(os.path.join(folder, "POINTS.xyz"))
     os.symlink(os.path.join(ROOT, "results", "published"), os.path.join(folder, "results", "published"))
     for published, names in {"fastlsm": ("fastlsm", "monday", "tuesday", "base"), "claims": ("claims",),
-                             "sweep": ("hand",), "calibration": ("beam",)}.items():
+                             "sweep": ("hand",), "calibration": ("beam",), "baselines": ("baselines",)}.items():
         for name in names:
             if not os.path.exists(os.path.join(folder, name + ".h5")):
                 shutil.copy(os.path.join(ROOT, "results", "published", published + ".h5"),

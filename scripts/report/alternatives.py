@@ -22,10 +22,9 @@ def summary(source):
 def table(source):
     made = Table("A clamped beam, on this machine", ["method", "stiffness", "step, s", "sag, %", "ms a step",
                                                       "ns a node and step", "ms a simulated second", "deviation, %"],
-                 f"Of {source.name}. Comparable: nodes, masses, gravity, machine, one thread, and the sag where it is "
-                 "the same. Not comparable: elements are implicit and keep their stiffness at any step, while that of "
-                 "the engines and of clusters goes with 1/step\N{SUPERSCRIPT TWO}; damping; collisions, which are off. "
-                 "Deviation: of nodes at rest from those of the elastic reference that sags as much, of the beam's length.")
+                 f"Of {source.name}. Comparable: {source.beam['comparable']}. Not comparable: "
+                 f"{source.beam['not_comparable']}. Deviation: of nodes at rest from those of the elastic reference that "
+                 "sags as much, of the beam's length.")
     for line in lines(source):
         made.add([line["method"], line["stiffness"], f"{line['step']:.3g}"]
                  + [number(float(line[name])) for name in ("sag_percent", "ms_step", "ns_node_step", "ms_second",

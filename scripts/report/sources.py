@@ -172,7 +172,7 @@ def read_calibration(source, file):
 
 def read_baselines(source, file):
     source.beam = attributes(file["plan"])
-    demand(source.beam, numbers="nodes sag_percent length w h")
+    demand(source.beam, "comparable not_comparable", numbers="nodes sag_percent length w h")
     source.method = read_columns(file["methods"], "method stiffness",
                                  "step sag_percent ms_step ns_node_step ms_second deviation_percent")
     if not len(source.method["method"]):
@@ -182,7 +182,7 @@ def read_baselines(source, file):
 # By kind: the schema that is read, and what reads it.
 READERS = {"shapebench results": (4, read_rows), "shapebench claims": (2, read_claims),
            "shapebench sweep": (1, read_sweep), "shapebench calibration": (1, read_calibration),
-           "shapebench baselines": (1, read_baselines)}
+           "shapebench baselines": (2, read_baselines)}
 
 
 def read_file(path, file):

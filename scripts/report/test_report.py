@@ -267,15 +267,16 @@ class Report(unittest.TestCase):
         line = dict(zip(baselines.COLUMNS, ("ours", "w 2", 0.001, 9.98, 0.0284, 55.5, 28.4, 1.25)))
         other = line | {"method": "theirs", "ms/step": 11.7, "deviation %": float("nan")}
         plan = {"nodes": 825, "length": 0.8, "sag_percent": 9.98, "w": 2, "h": 0.001}
-        baselines.store([line, other, other | {"step s": 1 / 240, "ms/step": 19.7}], plan, path, False)
+        machine = {"cpu": "one of ours", "git_commit": "0123", "utc": "2026-11-25T12:00:00Z"}
+        baselines.store([line, other, other | {"step s": 1 / 240, "ms/step": 19.7}], plan, machine, path, False)
         page = self.page(path)
         said = ("A clamped beam of 825 nodes that sags by 9.98% of its length costs 0.0284 ms a step with ours, at the same "
                 "step of 0.001 s 11.7 ms with theirs.")
         self.assertEqual(page.text.count(said), 2)  # in the headline, and above the table
-        for text in ("55.5", "19.7", "0.00417"):
+        for text in ("55.5", "19.7", "0.00417", baselines.COMPARABLE, baselines.NOT_COMPARABLE):
             self.assertIn(text, page.text)
         with self.assertRaises(draft.Refused):
-            baselines.store([line], plan, path, False)
+            baselines.store([line], plan, machine, path, False)
 
     def test_the_papers_values_are_those_of_tables(self):
         rows = sources.read(self.rows).rows

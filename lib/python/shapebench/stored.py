@@ -12,6 +12,7 @@ import h5py
 import numpy as np
 
 CHECKSUM_LINE = 64  # bytes at the file's end (bench/store/checksum.h)
+CHECKSUM_SAYS = "CRC-32, the file's last 64 bytes"  # the attribute of a file that has such a line
 CHECKSUM = re.compile(rb"\nshapebench: CRC-32 ([0-9a-f]{8}) of (\d{18}) bytes before\n")
 BLOCK = 1 << 24  # bytes read at once
 DEEPEST = 8  # groups in groups
@@ -38,6 +39,11 @@ def checksum_fits(path):
             block = file.read(min(left, BLOCK))
             crc, left = zlib.crc32(block, crc), left - len(block) if block else -1
         return line and (crc, size) == (int(line[1], 16), int(line[2]))
+
+
+def with_checksum(content):
+    """A file's bytes with the line at its end."""
+    return content + b"\nshapebench: CRC-32 %08x of %018d bytes before\n" % (zlib.crc32(content), len(content))
 
 
 def read_all(group, left, deep=0):
