@@ -1,5 +1,6 @@
 /* shapebench: dispatch to the commands; see command.h. */
 #include <argp.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,6 +13,7 @@
 #include "scene/scene.h"
 #include "settings/command_line.h"
 #include "system/interrupt.h"
+#include "system/process.h"
 #include "system/suggest.h"
 
 static const BenchCommand *const commands[] = {&bench_command_tables,
@@ -72,6 +74,18 @@ static const BenchCommand *find_command(const char *name)
     return NULL;
 }
 
+/* What `scripts/run view` makes needs the sources; the package has one ready. */
+static void no_view(void)
+{
+    char found[PATH_MAX], page[PATH_MAX];
+    SmError error;
+    bool there = !bench_script_find("page.html", found, &error) && realpath(found, page);
+    fprintf(stderr,
+            "shapebench: 'view' is of scripts/run in the sources, which makes the page%s%s%s\n",
+            there ? "; one that is made is " : "", there ? page : "",
+            there ? ": open it in a browser and drop your mesh on it" : "");
+}
+
 /* Scenes and files are run's arguments. */
 static void unknown_command(const char *name)
 {
@@ -122,7 +136,7 @@ int main(int argc, char **argv)
     const char *name = first < argc ? argv[first] : "tables";
     const BenchCommand *command = find_command(name);
     if (!command) {
-        unknown_command(name);
+        strcmp(name, "view") ? unknown_command(name) : no_view();
         return SM_USAGE;
     }
     if (first >= argc) return run_command(command, 1, none);

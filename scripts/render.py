@@ -81,7 +81,8 @@ def with_display():
         return
     missing = [tool for tool in ("xvfb-run", "xauth") if not shutil.which(tool)]
     if missing:
-        fail(f"no display and no {' and no '.join(missing)}: apt-get install xvfb xauth libgl1-mesa-dri", 3)
+        fail(f"no display and no {' and no '.join(missing)}: apt-get install xvfb xauth libgl1-mesa-dri "
+             "python3-vtk9 (scripts/setup pictures)", 3)
     until, _ = os.pipe()
     lender = subprocess.Popen(["xvfb-run", "-a", "-s", "-screen 0 64x64x24", "sh", "-c",
                                'echo "$DISPLAY $XAUTHORITY"; read -r end'], stdin=until, stdout=subprocess.PIPE,

@@ -56,6 +56,9 @@ for program in "$root/usr/bin" "$build"; do
 done >"$folder/hashes"
 [ "$(sort -u "$folder/hashes" | wc -l) $(wc -l <"$folder/hashes")" = "1 2" ] || fail "it runs differently"
 
+page=$({ "$root/usr/bin/shapebench" view 2>&1 || true; } | sed -n 's/.*one that is made is \(.*\): open it.*/\1/p')
+[ -s "$page" ] || fail "view does not say where the page is: $page"
+
 sed -n '/^#include <shapebench.h>/,/^```/{/^```/!p}' "$here/../lib/README.md" >"$folder/program.c"
 cat >"$folder/CMakeLists.txt" <<'PROJECT'
 cmake_minimum_required(VERSION 3.22)
