@@ -293,7 +293,7 @@ def main(arguments):
     try:
         import shapebench as sb
         sb.engines()
-        machine = environment()
+        machine = environment() if options.output else {}
     except (ImportError, OSError, subprocess.CalledProcessError) as reason:
         return missing(f"{reason}; cmake --build build makes the library and the program")
     build_adapter()
