@@ -206,8 +206,8 @@ def one(program, folder, name, seed):
     chance = random.Random(f"{name} {seed}")
     path = os.path.join(folder, "damaged" + os.path.splitext(name)[1])
     way, must = damage(os.path.join(folder, name), path, chance)
-    reader = chance.choice(READ[name])
-    words = [os.path.join(folder, word) if word == "a.cfg" else word.replace("@", path).replace("!", os.path.join(folder, "new")) for word in reader]
+    reader = [os.path.join(folder, word) if word == "a.cfg" else word for word in chance.choice(READ[name])]
+    words = [word.replace("@", path).replace("!", os.path.join(folder, "new")) for word in reader]
     words[0] = program if words[0] == "PROGRAM" else os.path.join(SCRIPTS, words[0])
     why = judge(words, must)
     for left in os.listdir(folder):

@@ -32,7 +32,8 @@ typedef struct {
     long count;
     long nodes;                 /* of the beam */
     double length, sag_percent; /* its length; how much all are to sag */
-    char comparable[BENCH_BASELINES_WORDS], not_comparable[BENCH_BASELINES_WORDS]; /* sentences */
+    char comparable[BENCH_BASELINES_WORDS],
+        not_comparable[BENCH_BASELINES_WORDS]; /* among methods */
     BenchMachine machine;
 } BenchBaselines;
 
