@@ -26,6 +26,7 @@ from small_inputs import QUICK, write_inputs  # noqa: E402
 
 from shapebench import InputError, UsageError, export, results  # noqa: E402
 
+BASELINES = HERE.parent.parent / "results" / "published" / "baselines.h5"  # of scripts/baselines.py, which needs Bullet
 COMMANDS = {
     "rows.h5": ["tables", "--scene", "a.cfg", *QUICK],
     "sweep.h5": ["sweep", "--scene", "a.cfg", "--w", "1:2", "--epsilon", "0", "--engine", "fastlsm", "--frames", "1", *QUICK],
@@ -71,7 +72,7 @@ class Results(unittest.TestCase):
 
     def test_columns_are_tables(self):
         for name, table in (("sweep.h5", "points"), ("beam.h5", "specimens"), ("beam.h5", "laws"),
-                            ("claims.h5", "experiments")):
+                            ("claims.h5", "experiments"), (BASELINES, "methods")):
             read = results.read(self.at(name))
             with h5py.File(self.at(name)) as file:
                 self.assertEqual(set(read[table].columns), set(file[table]))

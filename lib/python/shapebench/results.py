@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 Path = Union[str, "os.PathLike[str]"]
 RECORDS = ("rows", "claims", "curves")  # groups that hold a group for each record
-COLUMNS = ("points", "specimens", "laws", "experiments")  # groups that hold a dataset for each column
+COLUMNS = ("points", "specimens", "laws", "experiments", "methods")  # groups that hold a dataset for each column
 PANDAS = "pandas is not installed: install it (Debian's python3-pandas), or use records()"
 
 
@@ -71,7 +71,7 @@ class Results:
     schema: int
     values: Dict[str, Any]  # the file's own attributes and arrays
     groups: Dict[str, Dict[str, Any]]  # what is no table: "machine", "plan", "columns" (what each attribute means)
-    tables: Dict[str, Table]  # "rows"; "points"; "specimens", "laws"; "claims", "curves", "experiments"
+    tables: Dict[str, Table]  # "rows"; "points"; "specimens", "laws"; "claims", "curves", "experiments"; "methods"
 
     def __getitem__(self, table: str) -> Table:
         return self.tables[table]
