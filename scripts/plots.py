@@ -1,5 +1,5 @@
-"""What plot_sweep.py, plot_slice.py, plot_calibration.py and render.py share: how they are called, read and write,
-and end."""
+"""What plot_sweep.py, plot_slice.py, plot_map.py, plot_calibration.py and render.py share: how they are called, read
+and write, and end."""
 
 import os
 import sys
@@ -26,13 +26,15 @@ except ImportError as missing:
     fail(f"{missing}: scripts/setup installs it (python3-h5py)", 3)
 
 
-def parse(says, what, form):
-    """The command line of a script: `says` is its docstring, `what` its file is, `form` ("svg") the usual output's."""
+def parse(says, what, form, several=False):
+    """The command line of a script: `says` is its docstring, `what` its file is, `form` ("svg") the usual output's;
+    of several, `files` are all, and `file` the first."""
     parser = argparse.ArgumentParser(description=says.split("\n\n")[0])
-    parser.add_argument("file", help=what)
+    parser.add_argument("files", metavar="file", nargs="+" if several else 1, help=what)
     parser.add_argument("-o", "--output", help=f"SVG, PNG or PDF to write (default: FILE.{form})")
     parser.add_argument("--overwrite", action="store_true", help="replace a picture that is there")
     arguments = parser.parse_args()
+    arguments.file = arguments.files[0]
     arguments.output = arguments.output or f"{os.path.splitext(arguments.file)[0]}.{form}"
     return arguments
 

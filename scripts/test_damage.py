@@ -39,6 +39,7 @@ MADE = {  # file: what makes it
     "beam.h5": ["calibrate", "--scene", "beam.cfg", "--w", "1:2", "--epsilon", "0", "--across", "1", "--aspect", "none",
                 "--step", "none"],
     "slice.h5": ["info", "shape:block", "--slice", "z=0.5"],
+    "map.h5": ["info", "shape:block", "--map", "--nodes", "60"],
     "particles.vtkhdf": ["run", "a.cfg", "--record", "particles"],
     "nodes.vtkhdf": ["run", "a.cfg", "--engine", "octree", "--record", "nodes"],
 }
@@ -54,6 +55,7 @@ READ = {  # file: what reads it; @ is the file, ! a new name
     "baselines.h5": [["PROGRAM", "tables", "--baselines", "@", "--scene", "a.cfg", "--quiet", *QUICK],
                      ["PROGRAM", "report", "-o", "!.html", "@"]],
     "slice.h5": [["plot_slice.py", "@", "-o", "!.png"]],
+    "map.h5": [["plot_map.py", "@", "-o", "!.png"]],
     "particles.vtkhdf": [["check_step.py", "@"], ["brute_force.py", "@"]],
     "nodes.vtkhdf": [["check_step.py", "@"], ["brute_force.py", "@"]],
 }

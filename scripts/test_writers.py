@@ -36,6 +36,7 @@ COMMANDS = {  # what is written: the command, without its output; it comes last
     "beam.h5": [PROGRAM, "calibrate", "--scene", "beam.cfg", "--w", "1:2", "--epsilon", "0", "--across", "1",
                 "--aspect", "none", "--step", "none", "-o"],
     "slice.h5": [PROGRAM, "info", "shape:block", "--slice", "z=0.5", "-o"],
+    "map.h5": [PROGRAM, "info", "shape:block", "--map", "--nodes", "60", "-o"],
     "motion.vtkhdf": [PROGRAM, "run", "a.cfg", "--frames", "3000", "--record", "particles", "-o"],
     "mesh.obj": [PROGRAM, "scenes", "penguin", "--write-mesh"],
     "merged.h5": [PROGRAM, "merge", "OUTPUT", "kept-sweep.h5"],

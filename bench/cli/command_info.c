@@ -1,12 +1,14 @@
 #include <jansson.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "../../lib/printable.h"
 #include "../../lib/system/confine.h"
 #include "../../lib/voxel/voxelise.h"
 #include "../scene/body.h"
+#include "../scene/map.h"
 #include "../scene/slice.h"
 #include "../store/draft.h"
 #include "command.h"
@@ -19,7 +21,9 @@ typedef struct {
     bool overwrite;
     const char *slice; /* NULL: none */
     BenchSlice plane;
-    const char *output; /* of the slice */
+    bool map;
+    long nodes;         /* of the map's shell; 0: not given */
+    const char *output; /* of the slice or the map; NULL: none */
 } Options;
 
 /* What is said of one mesh. */
@@ -45,7 +49,15 @@ static const BenchSetting settings[] = {
          "that the meshless engine makes of them, on the plane so far through their box "
          "(z=0.5), into --output"),
      BENCH_IN(Options, slice)},
-    {BENCH_OUTPUT_OPTION("FILE.h5", 2, "HDF5 file of the slice; scripts/plot_slice.py draws it"),
+    {BENCH_OPTION("map", NULL, 2,
+                  "Instead, of one mesh or of points: the conformal map of its surface, and the "
+                  "nodes that the shell engine puts into it; with --output also stored"),
+     BENCH_IN(Options, map)},
+    {BENCH_OPTION("nodes", "N", 2, "Wanted nodes of the map's shell (default: 450)"),
+     BENCH_IN(Options, nodes), 8, 1e6},
+    {BENCH_OUTPUT_OPTION("FILE.h5", 2,
+                         "HDF5 file of the slice or the map; scripts/plot_slice.py and "
+                         "scripts/plot_map.py draw it"),
      BENCH_IN(Options, output)},
     BENCH_OVERWRITE_OPTION(Options, overwrite, 2),
     {0},
@@ -57,12 +69,17 @@ static void check(const struct argp_state *state, void *record)
     if (options->slice && !bench_slice_parse(options->slice, &options->plane))
         bench_usage(state, "--slice: '%.40s' is not x=SHARE, y=SHARE or z=SHARE, 0 to 1",
                     options->slice);
-    if (!options->common.words && (options->slice || options->particles))
+    if (!options->common.words && (options->slice || options->map || options->particles))
         bench_usage(state, "which MESH?");
-    if (!options->slice != !options->output || (options->overwrite && !options->slice))
-        bench_usage(state, "--slice and --output go together, and --overwrite with both");
-    if (options->slice && (options->common.words > 1 || options->format || options->particles))
-        bench_usage(state, "--slice: of one mesh, without --format and --particles");
+    if (options->map && options->slice) bench_usage(state, "--slice or --map, not both");
+    if (options->nodes && !options->map) bench_usage(state, "--nodes goes with --map");
+    if (!options->map && !options->slice != !options->output)
+        bench_usage(state, "--slice and --output go together, or --map and --output");
+    if (options->overwrite && !options->output)
+        bench_usage(state, "--overwrite: of which --output?");
+    const char *only = options->map ? "--map" : options->slice ? "--slice" : NULL;
+    if (only && (options->common.words > 1 || options->format || options->particles))
+        bench_usage(state, "%s: of one mesh, without --format and --particles", only);
 }
 
 static const char help[] =
@@ -176,6 +193,50 @@ static SmCode cut_slice(const Options *options, SmError *error)
     return code;
 }
 
+static void print_map(const char *name, const BenchMap *all)
+{
+    const RefSurfaceMap *map = &all->map;
+    const RefTriangulation *surface = ref_surface_map_triangles(map);
+    const RefChart *chart = &map->chart;
+    char shown[BENCH_PATH];
+    snprintf(shown, sizeof shown, "%s", name);
+    sm_printable(shown);
+    printf("%s\n", shown);
+    printf("  points        %ld\n", map->vertices);
+    printf("  surface       %s: genus %d, %d rims; %ld triangles\n", ref_map_kind_name(map->kind),
+           surface->genus, surface->rims, map->triangles);
+    printf("  mended        %ld triangles dropped, %d rims closed, %d handles cut\n", map->dropped,
+           map->closed, map->handles);
+    printf("  parameters    %.6g x %.6g, in %.3g s\n", chart->high[0] - chart->low[0],
+           chart->high[1] - chart->low[1], map->seconds);
+    printf("  angles        off by %.3g degrees (median), %.3g (95%%); %ld triangles turned over\n",
+           map->angle_median, map->angle_95, map->flips);
+    printf("  factor        %.3g to %.3g, median %.3g\n", all->factors[0], all->factors[2],
+           all->factors[1]);
+    printf("  nodes         %ld in %ld cells, in %.3g s\n", all->shell.nodes.count,
+           all->shell.tree.leaves, all->shell_seconds);
+    printf("  spread        %.3g%% of cells' edges on the surface\n", 100 * all->spread);
+    printf("  covers        %ld at least of a point, %.3g on average; %ld points have too few\n",
+           all->least_covers, all->mean_covers, all->uncovered);
+}
+
+static SmCode look_at_map(const Options *options, SmError *error)
+{
+    const char *mesh = options->common.word[0];
+    BenchMap *map = sm_alloc(1, sizeof *map);
+    SmCode code =
+        options->output ? bench_draft_reserve(options->output, options->overwrite, error) : SM_OK;
+    if (!code) code = bench_map_make(mesh, options->nodes, map, error);
+    if (!code) {
+        print_map(mesh, map);
+        if (options->output) code = bench_map_write(map, mesh, options->output, error);
+        bench_map_free(map);
+    }
+    if (!code && options->output && !options->common.quiet) printf("wrote %s\n", options->output);
+    free(map);
+    return code;
+}
+
 /* Said here, where strangers' meshes are looked at, and not in every run. */
 static void warn_of_freedom(const char *program)
 {
@@ -201,6 +262,7 @@ static SmCode perform(void *record, int argc, char **argv, SmError *error)
     }
     if (!options->common.quiet) warn_of_freedom(argv[0]);
     if (options->slice) return cut_slice(options, error);
+    if (options->map) return look_at_map(options, error);
     long particles = options->particles ? options->particles : 2000;
     SmCode code = SM_OK;
     json_t *list = json_array();

@@ -34,6 +34,7 @@ COMMANDS = {
     "beam.h5": ["calibrate", "--scene", "beam.cfg", "--w", "1:2", "--epsilon", "0", "--across", "1", "--aspect", "none",
                 "--step", "none"],
     "slice.h5": ["info", "shape:block", "--slice", "z=0.5"],
+    "map.h5": ["info", "shape:block", "--map", "--nodes", "60"],
     "still.vtkhdf": ["run", "a.cfg", "--frames", "3", "--fields", "speed,displacement"],
     "cut.vtkhdf": ["run", "beam-cut", "--frames", "25", "--steps", "20", "--particles", "300"],
 }
@@ -94,6 +95,11 @@ class Results(unittest.TestCase):
         read = results.read(self.at("slice.h5"))
         self.assertEqual((read.values["distance"].shape, read.values["axis"]), ((400, 400), 2))
         self.assertLess(read.values["distance"].min(), 0)
+
+    def test_a_map_has_groups_of_arrays(self):
+        read = results.read(self.at("map.h5"))
+        self.assertEqual(read.groups["nodes"]["points"].shape[1:], (3,))
+        self.assertEqual(len(read.groups["nodes"]["points"]), len(read.groups["nodes"]["parameters"]))
 
     def test_rows_that_differ_are_objects(self):
         table = results.Table({"a": results._column([np.ones(2), np.ones(3), None]), "b": results._column([1, 2, 3])})

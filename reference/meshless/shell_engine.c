@@ -88,23 +88,27 @@ static SmCode make_breaking(const RefMeshlessOptions *options, SmEngine *engine,
                                error);
 }
 
+RefShellOptions ref_shell_options(const RefMeshlessOptions *options, double longest)
+{
+    return (RefShellOptions){
+        .across = 1,
+        .nodes = options->nodes > 0 ? options->nodes : REF_SHELL_NODES,
+        .basis = options->covers > 0 ? REF_MLS_PLANE_LINEAR : REF_MLS_PLANE_QUADRATIC,
+        .eta = options->covers,
+        .thickness = options->thickness > 0 ? options->thickness : REF_SHELL_THIN * longest,
+        .material = options->material};
+}
+
 static SmCode make_sheet(const SmEngineParams *params, SmEngine *engine, SmError *error)
 {
     const RefMeshlessOptions *options = params->meshless;
     SmCode code = map_surface(options, engine, error);
     if (code != SM_OK) return code;
     SmBox box = sm_box_around(engine->count, CONST(engine->rest));
-    RefSheetOptions sheet = {
-        .shell = {.across = 1,
-                  .nodes = options->nodes > 0 ? options->nodes : REF_SHELL_NODES,
-                  .basis = options->covers > 0 ? REF_MLS_PLANE_LINEAR : REF_MLS_PLANE_QUADRATIC,
-                  .eta = options->covers,
-                  .thickness = options->thickness > 0 ? options->thickness
-                                                      : REF_SHELL_THIN * sm_box_longest(&box),
-                  .material = options->material},
-        .damping = {params->damping / (1 - params->damping) / params->h,
-                    options->stiffness_damping},
-        .h = params->h};
+    RefSheetOptions sheet = {.shell = ref_shell_options(options, sm_box_longest(&box)),
+                             .damping = {params->damping / (1 - params->damping) / params->h,
+                                         options->stiffness_damping},
+                             .h = params->h};
     memcpy(sheet.gravity, params->gravity, sizeof sheet.gravity);
     double start = sm_now();
     code = ref_sheet_create(&engine->body.map.chart, &sheet, &engine->body.sheet, error);

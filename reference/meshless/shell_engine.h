@@ -30,6 +30,9 @@ enum { REF_SHELL_NODES = 450 };
 
 extern const SmEngineType ref_shell_engine;
 
+/* What the engine builds of a surface so long, from options. */
+RefShellOptions ref_shell_options(const RefMeshlessOptions *options, double longest);
+
 /* What an engine is made of, for checks of it, and the seconds of its making. */
 typedef struct {
     RefSurfaceMap map;

@@ -262,26 +262,50 @@ static int by_value(const void *a, const void *b)
     return (*p > *q) - (*p < *q);
 }
 
-/* Differences of angles, in degrees, and triangles that are turned over. */
+/* How far the angle at a corner of a triangle is off in the plane, in degrees. */
+static double angle_off(const RefTriangulation *surface, const RefPlaced *placed, int corner)
+{
+    const double *at = placed->corner[corner], *next = placed->corner[(corner + 1) % 3];
+    const double *last = placed->corner[(corner + 2) % 3];
+    double a[2] = {next[0] - at[0], next[1] - at[1]}, b[2] = {last[0] - at[0], last[1] - at[1]};
+    double cotangent[3];
+    ref_triangle_shape(surface->length + 3L * placed->triangle, cotangent);
+    double angle = atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
+    return fabs(angle - atan2(1, cotangent[corner])) * 180 / M_PI;
+}
+
+/* Differences of angles, and triangles that are turned over. */
 static void measure_angles(const RefTriangulation *surface, const RefPlaced *placed,
                            RefSurfaceMap *map)
 {
     size_t corners = 3 * (size_t)surface->triangles;
-    double *off = sm_alloc(corners, sizeof *off), cotangent[3];
+    double *off = sm_alloc(corners, sizeof *off);
     for (size_t c = 0; c < corners; c++) {
-        const RefPlaced *flat = placed + c / 3;
-        const double *at = flat->corner[c % 3], *next = flat->corner[(c + 1) % 3];
-        const double *last = flat->corner[(c + 2) % 3];
-        double a[2] = {next[0] - at[0], next[1] - at[1]}, b[2] = {last[0] - at[0], last[1] - at[1]};
-        ref_triangle_shape(surface->length + c / 3 * 3, cotangent);
-        double angle = atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
-        off[c] = fabs(angle - atan2(1, cotangent[c % 3])) * 180 / M_PI;
-        map->flips += c % 3 == 0 && !(plane_area(flat) > 0);
+        off[c] = angle_off(surface, placed + c / 3, c % 3);
+        map->flips += c % 3 == 0 && !(plane_area(placed + c / 3) > 0);
     }
     qsort(off, corners, sizeof *off, by_value);
     map->angle_median = off[corners / 2];
     map->angle_95 = off[corners - 1 - corners / 20];
     free(off);
+}
+
+const RefTriangulation *ref_surface_map_triangles(const RefSurfaceMap *map)
+{
+    return &map->surface->triangles;
+}
+
+RefMapTriangle ref_surface_map_triangle(const RefSurfaceMap *map, long triangle)
+{
+    const struct RefMapSurface *on = map->surface;
+    const RefPlaced *placed = on->placed + triangle;
+    RefMapTriangle one;
+    memcpy(one.theta, placed->corner, sizeof one.theta);
+    for (int i = 0; i < 3; i++) {
+        one.factor[i] = on->factor[on->triangles.vertex[3 * triangle + i]];
+        one.off[i] = angle_off(&on->triangles, placed, i);
+    }
+    return one;
 }
 
 /* A triangle's images that reach into the rectangle, appended. */

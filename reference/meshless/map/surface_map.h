@@ -17,6 +17,7 @@
 
 #include "../../../lib/mesh/mesh.h"
 #include "../shell/chart.h"
+#include "triangulation.h"
 
 typedef enum {
     REF_MAP_DISK,
@@ -71,6 +72,19 @@ void ref_surface_map_feet(const RefSurfaceMap *map, long count, const double (*x
                           double (*theta)[2]);
 
 void ref_surface_map_free(RefSurfaceMap *map);
+
+/* The triangles that are mapped, as long as the map lives: the mesh's that were not dropped, with
+ * those that close it, and edges turned. */
+const RefTriangulation *ref_surface_map_triangles(const RefSurfaceMap *map);
+
+/* One of them in the plane, counter-clockwise unless it is turned over: its first corner in the
+ * rectangle, the others next to it, maybe beyond a seam; L at its corners; and how far its angles
+ * there are off, in degrees. */
+typedef struct {
+    double theta[3][2], factor[3], off[3];
+} RefMapTriangle;
+
+RefMapTriangle ref_surface_map_triangle(const RefSurfaceMap *map, long triangle);
 
 /* disk, cap, annulus, torus or sphere. */
 const char *ref_map_kind_name(RefMapKind kind);

@@ -1,0 +1,201 @@
+#!/usr/bin/python3
+"""Draws conformal maps that `shapebench info MESH --map -o FILE.h5` wrote, a row each: the surface under a
+checkerboard of its parameters, under the quadtree's cells with the nodes in them, and the plane of parameters.
+
+The board goes on across seams. Its squares are square on the surface where the map keeps angles; how large they are
+there, and the colours of cells, say what the conformal factor L is.
+
+Needs Debian's python3-h5py and python3-matplotlib (scripts/setup). Exit codes: 0 drawn; 2 wrong usage; 3 not a
+map, or damaged, or a package is missing; 4 cannot be written."""
+
+import pathlib
+
+from plots import drawing, fail, opened, parse, write
+
+import numpy  # after plots, which says what is missing
+
+ARRAYS = {  # dataset: kind of its numbers and its shape, whose letters stand for the same number everywhere
+    "seams/shift": ("f", "s2"), "seams/turned": ("u", "s"),
+    "surface/points": ("f", "v3"), "surface/triangles": ("i", "t3"), "surface/parameters": ("f", "t32"),
+    "surface/factor": ("f", "v"), "cells/low": ("f", "c2"), "cells/high": ("f", "c2"), "cells/factor": ("f", "c"),
+    "nodes/parameters": ("f", "n2"), "nodes/points": ("f", "n3"),
+}
+PIXELS, FINER = 360, 2  # of a panel, and how many times finer it is drawn
+SIGHT = numpy.array([[0.87, 0.0, -0.5], [-0.14, 0.96, -0.25], [0.48, 0.29, 0.83]])  # rows: right, up, towards us
+LIGHT = numpy.array([-0.35, 0.6, 0.72])
+BOARD = numpy.array([[0.96, 0.96, 0.94], [0.25, 0.45, 0.70]])
+
+
+def fits(array, kind, shape, sizes):
+    """Whether a dataset has this kind and shape, and numbers that are finite; `sizes` keeps what letters stand for."""
+    wanted = [int(size) if size.isdigit() else sizes.setdefault(size, n) for size, n in zip(shape, array.shape)]
+    return (array.dtype.kind == kind and array.ndim == len(shape) and list(array.shape) == wanted
+            and (kind != "f" or numpy.isfinite(array).all()))
+
+
+def read(path):
+    """What the file holds, by name."""
+    with opened(path) as file:
+        if file.attrs.get("kind") not in (b"shapebench map", "shapebench map"):
+            fail(f"{path}: not what `shapebench info --map` writes", 3)
+        held = {name: file[name][()] for name in ARRAYS}
+        held.update(low=file.attrs["low"], high=file.attrs["high"], angle=file.attrs["angle_error"][0])
+        sizes = {}
+        wrong = [name for name, (kind, shape) in ARRAYS.items() if not fits(held[name], kind, shape, sizes)]
+        corners, counts = held["surface/triangles"], [sizes.get(letter, 0) for letter in "vtcn"]
+        if not wrong and (min(counts) < 1 or corners.min() < 0 or corners.max() >= len(held["surface/points"])):
+            wrong = ["surface/triangles"]
+        side = numpy.asarray(held["high"] - held["low"])
+        if side.shape != (2,) or not numpy.isfinite(side).all() or not (side > 0).all():
+            wrong.append("low, high")
+        if (held["cells/high"] <= held["cells/low"]).any() or (held["cells/factor"] <= 0).any():
+            wrong.append("cells")
+        if wrong:
+            raise ValueError(f"{', '.join(wrong)}: not those of a map")
+        return held
+
+
+class View:
+    """The surface as pixels: those that it is in, and in each what is in front: its triangle, place in the plane and
+    shade."""
+
+    def __init__(self, held):
+        points = held["surface/points"]
+        self.middle = (points.min(0) + points.max(0)) / 2
+        turned = (points - self.middle) @ SIGHT.T
+        self.scale = 0.94 * PIXELS * FINER / max(2 * abs(turned[:, :2]).max(), 1e-300)
+        corner = self.on_screen(points)[held["surface/triangles"]]
+        self.depth = numpy.full(PIXELS * FINER * PIXELS * FINER, -numpy.inf)
+        self.triangle = numpy.full(self.depth.shape, -1)
+        theta = numpy.zeros((*self.depth.shape, 2))
+        normal = numpy.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+        facing = normal / numpy.maximum(numpy.linalg.norm(normal, axis=1), 1e-300)[:, None]
+        shade = 0.45 + 0.55 * abs(facing @ LIGHT / numpy.linalg.norm(LIGHT))
+        edges = corner[:, :, :2] - numpy.roll(corner[:, :, :2], 1, 1)
+        steps = numpy.ceil(1.5 * abs(edges).max((1, 2)).clip(1, 4 * PIXELS * FINER)).astype(int)
+        for count in numpy.unique(steps):  # triangles of one size together, so many at once as memory bears
+            which = numpy.flatnonzero(steps == count)
+            i, j = numpy.nonzero(numpy.tri(count + 1)[::-1])
+            share = numpy.stack([i, j, count - i - j], 1) / count
+            for some in numpy.array_split(which, 1 + len(which) * len(share) // 2000000):
+                self.put(some, share, corner, held["surface/parameters"], theta)
+        self.drawn = numpy.flatnonzero(self.triangle >= 0)
+        self.theta, self.shade = theta[self.drawn], shade[self.triangle[self.drawn]]
+
+    def on_screen(self, points):
+        """Pixels to the right, up and towards us."""
+        return (points - self.middle) @ SIGHT.T * self.scale + PIXELS * FINER / 2
+
+    def put(self, which, share, corner, flat, theta):
+        x = numpy.einsum("kc,tcd->tkd", share, corner[which]).reshape(-1, 3)
+        pixel = numpy.floor(x[:, 1]).astype(int) * PIXELS * FINER + numpy.floor(x[:, 0]).astype(int)
+        nearer = numpy.flatnonzero(x[:, 2] > self.depth[pixel])
+        order = nearer[numpy.argsort(x[nearer, 2])]
+        self.depth[pixel[order]] = x[order, 2]  # where several are, the last one stays: the nearest
+        first = order[x[order, 2] == self.depth[pixel[order]]]
+        self.triangle[pixel[first]] = which[first // len(share)]
+        theta[pixel[first]] = (share[first % len(share), :, None] * flat[which[first // len(share)]]).sum(1)
+
+    def sees(self, points):
+        """Of points on the surface, those in front, and where on the panel they are."""
+        x = self.on_screen(points)
+        pixel = numpy.floor(x[:, 1]).astype(int) * PIXELS * FINER + numpy.floor(x[:, 0]).astype(int)
+        return x[x[:, 2] > self.depth[pixel] - 0.02 * PIXELS * FINER, :2] / FINER
+
+    def picture(self, colours):
+        """Colours of pixels, shaded, on white."""
+        drawn = numpy.ones((len(self.depth), 3))
+        drawn[self.drawn] = colours * self.shade[:, None]
+        return drawn.reshape(PIXELS, FINER, PIXELS, FINER, 3).mean((1, 3)).clip(0, 1)
+
+
+def board(held):
+    """The place and side of a board's squares in the plane: a linear map, all but a similarity, under which what is
+    the same place of the surface has the same colour."""
+    shift, turned = held["seams/shift"], held["seams/turned"].astype(bool)
+    extent = numpy.ptp(held["surface/points"], axis=0).max()
+    side = 0.04 * extent / numpy.median(held["cells/factor"])  # cells are about as large as each other on the surface
+    origin = shift[turned][0] / 2 if turned.any() else held["low"]
+    moves = list(shift[~turned]) + [2 * (one / 2 - origin) for one in shift[turned]]
+    moves = [move for move in moves if numpy.linalg.norm(move) > 1e-9 * numpy.linalg.norm(held["high"] - held["low"])]
+    along = min((move for move in moves if move[1] == 0), key=numpy.linalg.norm, default=None)
+    up = min((move for move in moves if move[1] != 0), key=numpy.linalg.norm, default=None)
+    board = numpy.eye(2) / side
+    if along is not None:
+        board[0, 0] = board[1, 1] = 2 * max(round(abs(along[0]) / side / 2), 1) / abs(along[0])
+    if up is not None:
+        rows = 2 * max(round(abs(board[1, 1] * up[1]) / 2), 1)
+        columns = 2 * round(board[0, 0] * up[0] / 2)
+        board[1, 1] = rows / abs(up[1])
+        board[0, 1] = (columns - board[0, 0] * up[0]) / up[1]
+    return origin, board
+
+
+def checkers(held, theta):
+    origin, squares = board(held)
+    place = (theta - origin) @ squares.T
+    return BOARD[numpy.floor(place).sum(1).astype(int) % 2]
+
+
+def cells_at(held, theta):
+    """The cell at each place, -1 where there is none, and how near its edge the place is, by its own side."""
+    low, high = held["cells/low"], held["cells/high"]
+    found, edge = numpy.full(len(theta), -1), numpy.zeros(len(theta))
+    order = numpy.round(numpy.log2((high - low)[:, 0] / (held["high"] - held["low"])[0]) * 8).astype(int)
+    for shift, turned in [(0, 0), *zip(held["seams/shift"], held["seams/turned"])]:
+        for level in numpy.unique(order):
+            left = numpy.flatnonzero(found < 0)
+            own, place = numpy.flatnonzero(order == level), shift + (-theta[left] if turned else theta[left])
+            size = (high - low)[own[0]]
+            columns = round((held["high"] - held["low"])[0] / size[0])
+            key = ((low[own] - held["low"]) / size).round().astype(numpy.int64) @ [1, columns]
+            whole = numpy.floor((place - held["low"]) / size).astype(numpy.int64)
+            at = numpy.searchsorted(key, whole @ [1, columns], sorter=numpy.argsort(key)).clip(0, len(own) - 1)
+            cell = own[numpy.argsort(key)[at]]
+            inside = (place >= low[cell]).all(1) & (place <= high[cell]).all(1)
+            found[left[inside]] = cell[inside]
+            edge[left[inside]] = (numpy.minimum(place - low[cell], high[cell] - place).min(1) / size.min())[inside]
+    return found, edge
+
+
+def draw(files, pyplot):
+    from matplotlib.collections import PolyCollection
+    from matplotlib.colors import LogNorm
+
+    figure, axes = pyplot.subplots(len(files), 3, figsize=(10.6, 3.5 * len(files)), squeeze=False,
+                                   constrained_layout=True)
+    for (left, middle, right), (path, held) in zip(axes, files):
+        view = View(held)
+        factor = held["cells/factor"]
+        norm, colours = LogNorm(factor.min(), max(factor.max(), 1.01 * factor.min())), pyplot.get_cmap("viridis")
+        found, near = cells_at(held, view.theta)
+        tint = 0.45 + 0.55 * colours(norm(factor))[found][:, :3]
+        dark = numpy.where(near < 0.06, 0.55, 1.0)[:, None]
+        for panel, shown in ((left, checkers(held, view.theta)), (middle, tint * dark)):
+            panel.imshow(view.picture(shown), origin="lower", extent=(0, PIXELS, 0, PIXELS), interpolation="antialiased")
+            panel.axis("off")
+        nodes = view.sees(held["nodes/points"])
+        middle.plot(*nodes.T, ".", color="black", markersize=2.5)
+        low, high = held["cells/low"], held["cells/high"]
+        boxes = numpy.stack([low, numpy.stack([high[:, 0], low[:, 1]], 1), high, numpy.stack([low[:, 0], high[:, 1]], 1)], 1)
+        plane = right.add_collection(PolyCollection(boxes, array=factor, norm=norm, cmap=colours, edgecolors="0.25",
+                                                    linewidths=0.3, alpha=0.8))
+        right.plot(*held["nodes/parameters"].T, ".", color="black", markersize=1.2)
+        right.set(xlim=(held["low"][0], held["high"][0]), ylim=(held["low"][1], held["high"][1]), aspect="equal",
+                  xticks=[], yticks=[])
+        figure.colorbar(plane, ax=right, label="L", shrink=0.8)
+        name = pathlib.PurePath(path).stem
+        left.set_title(f"{name}: angles off by {held['angle']:.2g}° (median)", fontsize=9)
+        middle.set_title(f"{len(nodes)} of {len(held['nodes/points'])} nodes, cells on the surface", fontsize=9)
+        right.set_title("parameters", fontsize=9)
+    return figure
+
+
+def main():
+    options = parse(__doc__, "HDF5 files of maps", "png", several=True)
+    files = [(path, read(path)) for path in options.files]
+    write(draw(files, drawing()), options.output, options.overwrite, dpi=80, bbox_inches="tight")
+
+
+if __name__ == "__main__":
+    main()
