@@ -66,6 +66,14 @@
  * - elastic-sag: how deep the tip of a meshless cantilever, five times as long as thick, hangs, by
  *   what Timoshenko's theory says, against its nodes; `field` "linear" or "quadratic", the basis;
  *   range `n`, octants that it is thick.
+ * - cells: of the quadtree that `scene`'s shell has with so many nodes, range `n`, against its
+ *   cells, `field`: "spread", percent of their mean by which lengths of cells' edges on the surface
+ *   deviate from it (map.h); "least-covers", the fewest nodes whose covers, three edges wide, have
+ * a place inside, of five by five places in every cell, its sides' too.
+ * - seam: one point: the largest difference of entries of `scene`'s stiffness matrix, in 1e-6 of
+ *   the roots of their diagonals, from those of the same nodes where the map is cut open half a
+ *   side farther along its first axis; covers are 0.2% wider than the shell's.
+ * - frames: ms a frame of `scene`'s shell with so many nodes, range `n`, against their number.
  * - left: what is left of `scene`'s deformation, rms cells from the best rigid motion of the rest
  *   shape, after so many frames, range `n`, and as many with nothing that holds, pushes or stops
  *   the body, over the last half of these; damped at every `every`-th step if given; also
@@ -97,6 +105,9 @@ typedef enum {
     BENCH_TRY_BODY_ADDITIONS,
     BENCH_TRY_BREAKING,
     BENCH_TRY_ELASTIC_SAG,
+    BENCH_TRY_CELLS,
+    BENCH_TRY_SEAM,
+    BENCH_TRY_FRAMES,
 } BenchTry;
 
 typedef enum {

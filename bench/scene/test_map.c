@@ -7,20 +7,6 @@
 
 static unsigned seed = 7;
 
-static void write_mesh(const char *name, SmMesh *mesh)
-{
-    FILE *file = fopen(path_in(name), "w");
-    assert_non_null(file);
-    for (long v = 0; v < mesh->vertex_count; v++)
-        fprintf(file, "v %.9g %.9g %.9g\n", mesh->position[v][0], mesh->position[v][1],
-                mesh->position[v][2]);
-    for (long t = 0; t < mesh->triangle_count; t++)
-        fprintf(file, "f %d %d %d\n", mesh->triangle[t][0] + 1, mesh->triangle[t][1] + 1,
-                mesh->triangle[t][2] + 1);
-    fclose(file);
-    sm_mesh_free(mesh);
-}
-
 static void on_torus(double u, double v, double x[3])
 {
     double out = 3 + cos(2 * M_PI * v);
@@ -116,20 +102,15 @@ TEST(maps_are_stored_whole)
     needs_solver();
     needs_python("h5py");
     write_text("look.py", look);
-    SmMesh mesh = sphere_mesh(9, 0.3, &seed);
-    write_mesh("ball.obj", &mesh);
+    write_obj(path_in("ball.obj"), sphere_mesh(9, 0.3, &seed));
     check_map("ball.obj", "sphere");
-    mesh = ball_mesh(9, true, 0.3, &seed);
-    write_mesh("half.obj", &mesh);
+    write_obj(path_in("half.obj"), ball_mesh(9, true, 0.3, &seed));
     check_map("half.obj", "disk");
-    mesh = grid_mesh(45, 15, true, true, on_torus, 0.3, &seed);
-    write_mesh("torus.obj", &mesh);
+    write_obj(path_in("torus.obj"), grid_mesh(45, 15, true, true, on_torus, 0.3, &seed));
     check_map("torus.obj", "torus");
-    mesh = grid_mesh(30, 18, true, false, on_vase, 0.3, &seed);
-    write_mesh("vase.obj", &mesh);
+    write_obj(path_in("vase.obj"), grid_mesh(30, 18, true, false, on_vase, 0.3, &seed));
     check_map("vase.obj", "annulus");
-    mesh = grid_mesh(24, 12, false, false, on_wave, 0.3, &seed);
-    write_mesh("wave.obj", &mesh);
+    write_obj(path_in("wave.obj"), grid_mesh(24, 12, false, false, on_wave, 0.3, &seed));
     check_map("wave.obj", "disk");
 }
 
@@ -140,8 +121,7 @@ TEST(the_engine_has_the_same_map)
     Result looked, ran;
     char nodes[64];
     double off;
-    SmMesh mesh = sphere_mesh(9, 0.3, &seed);
-    write_mesh("ball.obj", &mesh);
+    write_obj(path_in("ball.obj"), sphere_mesh(9, 0.3, &seed));
     run("info ball.obj --map --nodes 80", &looked);
     run("run ball.obj --engine shell --nodes 80 --frames 1 --no-output", &ran);
     assert_int_equal(looked.code, 0);

@@ -90,4 +90,19 @@ static inline void random_move(unsigned *seed, SmMesh *mesh)
     }
 }
 
+/* Writes an OBJ file, and frees the mesh. */
+static inline void write_obj(const char *path, SmMesh mesh)
+{
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    for (long v = 0; v < mesh.vertex_count; v++)
+        fprintf(file, "v %.9g %.9g %.9g\n", mesh.position[v][0], mesh.position[v][1],
+                mesh.position[v][2]);
+    for (long t = 0; t < mesh.triangle_count; t++)
+        fprintf(file, "f %d %d %d\n", mesh.triangle[t][0] + 1, mesh.triangle[t][1] + 1,
+                mesh.triangle[t][2] + 1);
+    assert_int_equal(fclose(file), 0);
+    sm_mesh_free(&mesh);
+}
+
 #endif

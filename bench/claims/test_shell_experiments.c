@@ -1,0 +1,106 @@
+/* Experiments with shells: on a torus whose factor is known, and what they refuse. */
+#include "../../lib/test_frame.h"
+#include "../../reference/meshless/map/test_surfaces.h"
+#include "../../reference/meshless/test_solver.h"
+#include "../cli/test_program.h"
+#include "experiments.h"
+
+static unsigned seed = 3;
+
+/* Of radius `ring`, in those of its tube. */
+static double ring;
+static void on_torus(double u, double v, double x[3])
+{
+    double out = ring + cos(2 * M_PI * v);
+    x[0] = out * cos(2 * M_PI * u);
+    x[1] = out * sin(2 * M_PI * u);
+    x[2] = sin(2 * M_PI * v);
+}
+
+static void on_sheet(double u, double v, double x[3])
+{
+    x[0] = 2 * u;
+    x[1] = v;
+    x[2] = 0;
+}
+
+/* A scene NAME.cfg of it, with `more` settings of the shell. */
+static void write_scene(const char *name, SmMesh mesh, const char *more)
+{
+    char file[64], text[1024];
+    snprintf(file, sizeof file, "%s.obj", name);
+    write_obj(path_in(file), mesh);
+    snprintf(text, sizeof text,
+             "mesh = \"%s\";\nparticles = 300;\nengine = \"shell\";\nh = 0.01;\nframes = 2;\n"
+             "gravity = [0.0, 0.0, -1.0];\n"
+             "meshless = { young = 1.0e5; thickness = 0.05; nodes = 300; %s};\n",
+             path_in(file), more);
+    snprintf(file, sizeof file, "%s.cfg", name);
+    write_text(file, text);
+}
+
+static BenchCurve curve_of(BenchMeasure measure, const char *scene, const char *field)
+{
+    BenchLab lab = {.quick = true, .threads = 1, .seed = 1};
+    const char *path = strchr(scene, '.') ? path_in(scene) : scene;
+    assert_true(strlen(path) < sizeof measure.scene);
+    strcpy(measure.scene, path);
+    strcpy(measure.field, field);
+    int number = bench_experiment(&lab, &measure);
+    BenchCurve curve = lab.curve[number];
+    bench_lab_free(&lab);
+    return curve;
+}
+
+/* L goes as the distance from the axis, R + cos v, where the parameter around the tube has
+ * d theta = dv / (R + cos v): its mean is the root of R^2 - 1, that of its square R times that
+ * root. With R = 8, eight cells around and 64 along it have one size in the plane. */
+TEST(lengths_of_cells_spread_as_the_factor_does)
+{
+    needs_solver();
+    BenchMeasure measure = {.experiment = BENCH_TRY_CELLS, .n = {512, 512, 1}};
+    ring = 8;
+    write_scene("torus", grid_mesh(400, 50, true, true, on_torus, 0, &seed), "");
+    BenchCurve curve = curve_of(measure, "torus.cfg", "spread");
+    double spread = 100 * sqrt(ring / sqrt(ring * ring - 1) - 1);
+    if (!curve.valid) fail_msg("%s", curve.reason);
+    assert_true(curve.x[0] == 512 && fabs(curve.y[0] / spread - 1) < 0.1);
+    curve = curve_of(measure, "torus.cfg", "least-covers"); /* of nine: on cells' sides six */
+    assert_true(curve.valid && curve.y[0] == 6);
+    measure.n = (BenchRange){100, 300, 4};
+    curve = curve_of(measure, "torus.cfg", "least-covers");
+    assert_true(curve.valid && curve.points == 4);
+    for (int p = 0; p < curve.points; p++) assert_true(curve.y[p] >= 3 && curve.y[p] <= 6);
+}
+
+TEST(seams_make_no_difference)
+{
+    needs_solver();
+    BenchMeasure measure = {.experiment = BENCH_TRY_SEAM};
+    ring = 3;
+    write_scene("ring", grid_mesh(45, 15, true, true, on_torus, 0.3, &seed), "");
+    write_scene("ball", sphere_mesh(9, 0.3, &seed), "");
+    write_scene("sheet", grid_mesh(20, 10, false, false, on_sheet, 0.2, &seed), "");
+    BenchCurve curve = curve_of(measure, "ring.cfg", "");
+    if (!curve.valid) fail_msg("%s", curve.reason);
+    assert_true(curve.y[0] >= 0 && curve.y[0] < 0.1);
+    curve = curve_of(measure, "ball.cfg", "");
+    if (!curve.valid) fail_msg("%s", curve.reason);
+    assert_true(curve.y[0] >= 0 && curve.y[0] < 0.1);
+    assert_non_null(strstr(curve_of(measure, "sheet.cfg", "").reason, "without a seam"));
+    assert_non_null(strstr(curve_of(measure, "penguin", "").reason, "no shell"));
+}
+
+TEST(frames_of_more_nodes_take_longer)
+{
+    needs_solver();
+    BenchMeasure measure = {.experiment = BENCH_TRY_FRAMES, .n = {40, 320, 2}};
+    write_scene("ball", sphere_mesh(9, 0.3, &seed), "");
+    write_scene("brittle", sphere_mesh(9, 0.3, &seed), "strength = 1.0e5; ");
+    BenchCurve curve = curve_of(measure, "ball.cfg", "");
+    if (!curve.valid && !curve.busy) fail_msg("%s", curve.reason);
+    assert_true(curve.points == 2 && curve.x[0] < 60 && curve.x[1] > 250);
+    assert_true(curve.busy || curve.y[1] > 2 * curve.y[0]);
+    assert_non_null(strstr(curve_of(measure, "brittle.cfg", "").reason, "stays whole"));
+    assert_non_null(strstr(curve_of(measure, "penguin", "").reason, "no shell"));
+}
