@@ -64,10 +64,21 @@ static void print_lattice(const BenchRunner *runner, const SmCounts *counts)
     sm_pieces_free(&pieces);
 }
 
-/* Nodes and surface at the end of a scene that has changed them. */
-static void print_changes(const BenchPlayback *play, const BenchOutcome *outcome)
+/* What the engine's particles are called. */
+static const char *particles_of(const BenchRunner *runner)
+{
+    if (bench_engine(runner->type->name)->sampled) return "nodes";
+    return runner->type->vertices ? "points" : "particles";
+}
+
+/* Particles and surface at the end of a scene that can change them. */
+static void print_changes(BenchPlayback *play, const BenchOutcome *outcome)
 {
     char each[32] = "BUSY";
+    if (!outcome->changes) {
+        printf("changes: none\n");
+        return;
+    }
     if (!bench_watch_busy(&outcome->change.watch))
         snprintf(each, sizeof each, "%.4g ms each",
                  1e3 * outcome->change.seconds / fmax((double)outcome->change.count, 1));
@@ -80,10 +91,10 @@ static void print_changes(const BenchPlayback *play, const BenchOutcome *outcome
         triangles += bodies * info.triangles;
         left += bodies * play->group[p].skin.incomplete;
     }
-    printf("changes: %ld frame%s, %s with the surface; in the end %ld nodes, and surfaces "
+    printf("changes: %ld frame%s, %s with the surface; in the end %ld %s, and surfaces "
            "of %ld triangles in %ld piece%s, ",
            outcome->changes, outcome->changes == 1 ? "" : "s", each, bench_playback_particles(play),
-           triangles, pieces, pieces == 1 ? "" : "s");
+           particles_of(bench_playback_runner(play)), triangles, pieces, pieces == 1 ? "" : "s");
     if (open)
         printf("with %ld open or non-manifold edges\n", open);
     else
@@ -98,8 +109,8 @@ bool bench_summary_print(BenchPlayback *play, const BenchOutcome *outcome)
     SmCounts counts;
     runner->type->count(runner->engine, &counts);
     if (play->count > 1)
-        printf("%s: %ld bodies, %ld nodes in all; the last that is touched:\n", runner->scene->name,
-               play->body->instances, particles);
+        printf("%s: %ld bodies, %ld %s in all; the last that is touched:\n", runner->scene->name,
+               play->body->instances, particles, particles_of(runner));
     const BenchEngine *engine = bench_engine(runner->type->name);
     (engine->describe ? engine->describe : print_lattice)(runner, &counts);
     if (bench_playback_changes(play)) print_changes(play, outcome);

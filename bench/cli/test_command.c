@@ -8,6 +8,7 @@
 
 #include "../../lib/printable.h"
 #include "../../lib/test_frame.h"
+#include "../../reference/meshless/test_solver.h"
 #include "test_program.h"
 
 static bool there(const char *name)
@@ -506,6 +507,25 @@ TEST(claims_of_ones_own_decide_the_exit_code)
     run("claims --claims own.cfg --claims own.cfg --list", &result);
     assert_int_equal(result.code, 3);
     assert_non_null(strstr(result.err, "own.cfg:2: 'few' of 'mine' is there already"));
+}
+
+TEST(what_can_break_says_what_did)
+{
+    Result result;
+    run("run bar-breaks --frames 1 --no-output", &result);
+    assert_int_equal(result.code, 0);
+    assert_non_null(strstr(result.out, "\nchanges: none\n"));
+    run("run bar-breaks --frames 35 --no-output", &result);
+    assert_int_equal(result.code, 0);
+    const char *changes = strstr(result.out, "\nchanges: "),
+               *end = strstr(result.out, "in the end");
+    assert_true(changes && end && strtol(changes + 10, NULL, 10) > 0);
+    assert_non_null(strstr(end, "in the end 1470 particles, and surfaces of "));
+    needs_solver();
+    run("run shape:block --engine shell --nodes 60 --strength 1e12 --frames 1 --no-output",
+        &result);
+    assert_int_equal(result.code, 0);
+    assert_non_null(strstr(result.out, "\nchanges: none\n"));
 }
 
 TEST(a_full_disk_is_an_error)
