@@ -104,3 +104,22 @@ TEST(frames_of_more_nodes_take_longer)
     assert_non_null(strstr(curve_of(measure, "brittle.cfg", "").reason, "stays whole"));
     assert_non_null(strstr(curve_of(measure, "penguin", "").reason, "no shell"));
 }
+
+TEST(a_burst_is_measured_once_through)
+{
+    needs_solver();
+    BenchMeasure measure = {.experiment = BENCH_TRY_BURSTING};
+    write_scene("burst", sphere_mesh(9, 0.3, &seed),
+                "covers = 4.5; strength = 2.0e4; branching = 2.0; pressure = 6.0e3; pulse = 0.1; ");
+    write_scene("strong", sphere_mesh(9, 0.3, &seed), "strength = 1.0e12; ");
+    BenchCurve grown = curve_of(measure, "burst.cfg", "growth-percent");
+    if (!grown.valid) fail_msg("%s", grown.reason);
+    assert_true(grown.points == 1 && grown.y[0] > 5 && grown.y[0] < 300);
+    BenchCurve ratio = curve_of(measure, "burst.cfg", "step-ratio");
+    if (!ratio.valid && !ratio.busy) fail_msg("%s", ratio.reason);
+    assert_true(ratio.y[0] > 1 && ratio.low[0] <= ratio.y[0] && ratio.y[0] <= ratio.high[0]);
+    assert_true(curve_of(measure, "strong.cfg", "growth-percent").y[0] == 0);
+    assert_non_null(
+        strstr(curve_of(measure, "strong.cfg", "step-ratio").reason, "0 steps with new cracks"));
+    assert_non_null(strstr(curve_of(measure, "penguin", "step-ratio").reason, "that breaks"));
+}
