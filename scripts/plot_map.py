@@ -33,25 +33,46 @@ def fits(array, kind, shape, sizes):
             and (kind != "f" or numpy.isfinite(array).all()))
 
 
+def inside(x, bounds, margin):
+    """Whether places are in the bounds, or outside by no more than so many of their longest side."""
+    return (abs(x - bounds.mean(0)) <= (0.5 + margin) * numpy.ptp(bounds, axis=0).max()).all()
+
+
+def check(held):
+    """Raises ValueError where numbers are none that a map has."""
+    sizes = {}
+    wrong = [name for name, (kind, shape) in ARRAYS.items() if not fits(held[name], kind, shape, sizes)]
+    if wrong or not all(sizes[letter] for letter in "vtcn"):
+        raise ValueError(f"{', '.join(wrong) or 'arrays without a row'}: not those of a map")
+    low, side, points = held["low"], held["high"] - held["low"], held["surface/points"]
+    box = numpy.stack([points.min(0), points.max(0)])
+    extent, factor = numpy.ptp(box, axis=0).max(), held["cells/factor"]
+    rectangle = numpy.stack([low, held["high"]])
+    right = {
+        "low, high": side.shape == (2,) and numpy.isfinite(rectangle).all() and (side > 0).all(),
+        "angle_error": numpy.shape(held["angle"]) == (2,) and numpy.isfinite(held["angle"]).all(),
+        "surface/points": 0 < extent < 1e100,
+        "surface/triangles": 0 <= held["surface/triangles"].min() and held["surface/triangles"].max() < len(points),
+        "surface/parameters": inside(held["surface/parameters"], rectangle, 2),
+        "seams/shift": inside(held["seams/shift"], rectangle - low, 3),
+        "cells": (held["cells/high"] - held["cells/low"] > 1e-9 * side).all()
+                 and inside(held["cells/low"], rectangle, 0.001) and inside(held["cells/high"], rectangle, 0.001),
+        "cells/factor": 0 < factor.min() and factor.max() < 1e200 * factor.min(),
+        "nodes": inside(held["nodes/points"], box, 1) and inside(held["nodes/parameters"], rectangle, 0.001),
+    }
+    wrong = [name for name, whole in right.items() if not whole]
+    if wrong:
+        raise ValueError(f"{', '.join(wrong)}: not those of a map")
+
+
 def read(path):
     """What the file holds, by name."""
     with opened(path) as file:
         if file.attrs.get("kind") not in (b"shapebench map", "shapebench map"):
             fail(f"{path}: not what `shapebench info --map` writes", 3)
         held = {name: file[name][()] for name in ARRAYS}
-        held.update(low=file.attrs["low"], high=file.attrs["high"], angle=file.attrs["angle_error"][0])
-        sizes = {}
-        wrong = [name for name, (kind, shape) in ARRAYS.items() if not fits(held[name], kind, shape, sizes)]
-        corners, counts = held["surface/triangles"], [sizes.get(letter, 0) for letter in "vtcn"]
-        if not wrong and (min(counts) < 1 or corners.min() < 0 or corners.max() >= len(held["surface/points"])):
-            wrong = ["surface/triangles"]
-        side = numpy.asarray(held["high"] - held["low"])
-        if side.shape != (2,) or not numpy.isfinite(side).all() or not (side > 0).all():
-            wrong.append("low, high")
-        if (held["cells/high"] <= held["cells/low"]).any() or (held["cells/factor"] <= 0).any():
-            wrong.append("cells")
-        if wrong:
-            raise ValueError(f"{', '.join(wrong)}: not those of a map")
+        held.update(low=file.attrs["low"], high=file.attrs["high"], angle=file.attrs["angle_error"])
+        check(held)
         return held
 
 
@@ -110,8 +131,8 @@ class View:
 
 
 def board(held):
-    """The place and side of a board's squares in the plane: a linear map, all but a similarity, under which what is
-    the same place of the surface has the same colour."""
+    """Where a board's squares begin in the plane, and the linear map from there that makes them of side 1: all but a
+    similarity, so that what is the same place of the surface, beyond seams, has the same colour."""
     shift, turned = held["seams/shift"], held["seams/turned"].astype(bool)
     extent = numpy.ptp(held["surface/points"], axis=0).max()
     side = 0.04 * extent / numpy.median(held["cells/factor"])  # cells are about as large as each other on the surface
@@ -152,9 +173,9 @@ def cells_at(held, theta):
             whole = numpy.floor((place - held["low"]) / size).astype(numpy.int64)
             at = numpy.searchsorted(key, whole @ [1, columns], sorter=numpy.argsort(key)).clip(0, len(own) - 1)
             cell = own[numpy.argsort(key)[at]]
-            inside = (place >= low[cell]).all(1) & (place <= high[cell]).all(1)
-            found[left[inside]] = cell[inside]
-            edge[left[inside]] = (numpy.minimum(place - low[cell], high[cell] - place).min(1) / size.min())[inside]
+            hit = (place >= low[cell]).all(1) & (place <= high[cell]).all(1)
+            found[left[hit]] = cell[hit]
+            edge[left[hit]] = (numpy.minimum(place - low[cell], high[cell] - place).min(1) / size.min())[hit]
     return found, edge
 
 
@@ -172,12 +193,12 @@ def draw(files, pyplot):
         tint = 0.45 + 0.55 * colours(norm(factor))[found][:, :3]
         dark = numpy.where(near < 0.06, 0.55, 1.0)[:, None]
         for panel, shown in ((left, checkers(held, view.theta)), (middle, tint * dark)):
-            panel.imshow(view.picture(shown), origin="lower", extent=(0, PIXELS, 0, PIXELS), interpolation="antialiased")
+            panel.imshow(view.picture(shown), origin="lower", extent=(0, PIXELS, 0, PIXELS))
             panel.axis("off")
         nodes = view.sees(held["nodes/points"])
         middle.plot(*nodes.T, ".", color="black", markersize=2.5)
         low, high = held["cells/low"], held["cells/high"]
-        boxes = numpy.stack([low, numpy.stack([high[:, 0], low[:, 1]], 1), high, numpy.stack([low[:, 0], high[:, 1]], 1)], 1)
+        boxes = numpy.stack([low, high * [1, 0] + low * [0, 1], high, low * [1, 0] + high * [0, 1]], 1)
         plane = right.add_collection(PolyCollection(boxes, array=factor, norm=norm, cmap=colours, edgecolors="0.25",
                                                     linewidths=0.3, alpha=0.8))
         right.plot(*held["nodes/parameters"].T, ".", color="black", markersize=1.2)
@@ -185,7 +206,7 @@ def draw(files, pyplot):
                   xticks=[], yticks=[])
         figure.colorbar(plane, ax=right, label="L", shrink=0.8)
         name = pathlib.PurePath(path).stem
-        left.set_title(f"{name}: angles off by {held['angle']:.2g}° (median)", fontsize=9)
+        left.set_title(f"{name}: angles off by {held['angle'][0]:.2g}° (median)", fontsize=9)
         middle.set_title(f"{len(nodes)} of {len(held['nodes/points'])} nodes, cells on the surface", fontsize=9)
         right.set_title("parameters", fontsize=9)
     return figure

@@ -38,6 +38,8 @@ change "del f['surface/parameters']"
 change "f['surface/triangles'][0, 0] = 1 << 30"
 change "f['cells/factor'][0] = float('nan')"
 change "f.attrs['high'] = f.attrs['low']"
+change "f.attrs['angle_error'] = b'text'"
+change "f['nodes/points'][0] = 1e9"
 mkdir folder
 refused 4 block.h5 -o folder
 [ ! -e folder.png ] || wrong "it wrote beside the folder"
