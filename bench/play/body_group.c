@@ -50,7 +50,6 @@ static void create_skin(BenchGroup *group)
                    cut_lattice || limit > 0 ? (const double(*)[3])runner->x0 : NULL, limit,
                    points ? (SmMesh){0} : surface, &group->skin);
     if (points) group->skin.surface = surface;
-    sm_skin_draw(&group->skin);
     if (cut_lattice && !(limit > 0)) group->body.cut = &group->skin.cut;
 }
 

@@ -72,6 +72,7 @@ typedef struct {
     double jacobi_sweeps;   /* mean sweeps a decomposition in the last step: lattices, by Jacobi */
     double summation_nodes; /* mean per region; octree only */
     long contacts;          /* of the last step or contacts(), but those with obstacles */
+    bool stopped;           /* steps could not be made any more: the body stands still since then */
 } SmCounts;
 
 typedef enum {

@@ -8,20 +8,30 @@
 #include "../../fastlsm/fastlsm.h"
 #include "../../reference/brute.h"
 #include "../../reference/meshless/engine.h"
+#include "../../reference/meshless/shell_engine.h"
 #include "../../reference/meshless/solve/solver.h"
+#include "../box.h"
 #include "../engine/boundary.h"
 #include "../isa.h"
 #include "../system/team.h"
 #include "inner.h"
 
+enum { MOST_COVERS = 12 }; /* wider functions cost much, and come to depend on one another */
+
+static const char solvers[] = "CHOLMOD and ARPACK";
+
 static const struct {
     const char *name;
     const SmEngineType *type[2]; /* by precision; NULL: it has none such */
-    const char *needs;
-} engines[] = {[SB_FASTLSM] = {"fastlsm", {&fastlsm_engine_f32, &fastlsm_engine_f64}, NULL},
-               [SB_OCTREE] = {"octree", {&octree_engine_f32, &octree_engine_f64}, NULL},
-               [SB_BRUTE] = {"brute", {NULL, &ref_brute_engine}, "GSL"},
-               [SB_MESHLESS] = {"meshless", {NULL, &ref_meshless_engine}, "CHOLMOD and ARPACK"}};
+    const char *needs;           /* NULL: it is in every library */
+    const bool *built;           /* NULL: it is where its type is */
+} engines[] = {
+    [SB_FASTLSM] = {"fastlsm", {&fastlsm_engine_f32, &fastlsm_engine_f64}, NULL, NULL},
+    [SB_OCTREE] = {"octree", {&octree_engine_f32, &octree_engine_f64}, NULL, NULL},
+    [SB_BRUTE] = {"brute", {NULL, &ref_brute_engine}, "GSL", NULL},
+    [SB_MESHLESS] = {"meshless", {NULL, &ref_meshless_engine}, solvers, &ref_solver_built},
+    [SB_THIN_SHELL] = {"shell", {NULL, &ref_shell_engine}, solvers, &ref_solver_built},
+};
 
 const char *sb_engine_name(int engine)
 {
@@ -32,7 +42,7 @@ const char *sb_engine_name(int engine)
 int sb_engine_available(int engine)
 {
     return sb_engine_name(engine) && engines[engine].type[SB_DOUBLE]->create &&
-           (engine != SB_MESHLESS || ref_solver_built);
+           (!engines[engine].built || *engines[engine].built);
 }
 
 /* ---- creation */
@@ -52,6 +62,12 @@ void sb_octree_params_init(sb_octree_params *params, size_t size)
 void sb_meshless_params_init(sb_meshless_params *params, size_t size)
 {
     static const sb_meshless_params defaults = {.young = 1e5, .poisson = 0.3, .density = 1000};
+    sm_give_defaults(&defaults, sizeof defaults, params, size);
+}
+
+void sb_shell_params_init(sb_shell_params *params, size_t size)
+{
+    static const sb_shell_params defaults = {.young = 1e5, .poisson = 0.3, .density = 1000};
     sm_give_defaults(&defaults, sizeof defaults, params, size);
 }
 
@@ -199,23 +215,39 @@ static int take_octree(const sb_octree_params *from, OctOptions *to, sb_error *e
     return code ? code : take_widths(&p, to, error);
 }
 
-/* Of bodies that are made of their surface. */
+/* Of bodies that are made of a material. */
+static int check_elastic(const sb_body_params *p, sb_error *error)
+{
+    const char *name = sb_engine_name(p->engine);
+    if (p->mass)
+        return sm_refuse(error, SB_INPUT, "'mass': the engine %s's bodies weigh by 'density'",
+                         name);
+    for (int n = 0; p->pose && n < 12; n++)
+        if (n % 4 < 3 && fabs(p->pose[n] - (n / 4 == n % 4)) > 1e-6)
+            return sm_refuse(error, SB_INPUT,
+                             "'pose' turns: the engine %s only moves a body to where it starts; "
+                             "turn its mesh",
+                             name);
+    return SB_OK;
+}
+
+static int check_material(const RefMaterial *material, double stiffness_damping, int64_t nodes,
+                          sb_error *error)
+{
+    int code = sm_check_range(material->young, 1e-30, 1e30, "young", error);
+    if (!code) code = sm_check_range(material->poisson, -0.99, 0.49, "poisson", error);
+    if (!code) code = sm_check_range(material->density, 1e-30, 1e30, "density", error);
+    if (!code) code = sm_check_range(stiffness_damping, 0, 1e6, "stiffness_damping", error);
+    if (!code && nodes) code = sm_check_range((double)nodes, 8, 1e6, "nodes", error);
+    return code;
+}
+
 static int take_meshless(const sb_meshless_params *from, const sb_mesh *surface,
                          RefMeshlessOptions *to, sb_error *error)
 {
     sb_meshless_params p;
     sb_meshless_params_init(&p, sizeof p);
     int code = from ? sm_take_params(from, &p, sizeof p, "sb_meshless_params", error) : SB_OK;
-    if (!code && !surface)
-        code = sm_refuse(error, SB_USAGE, "'surface' is NULL: a meshless body is made of it");
-    if (!code) code = sm_check_range(p.young, 1e-30, 1e30, "young", error);
-    if (!code) code = sm_check_range(p.poisson, -0.99, 0.49, "poisson", error);
-    if (!code) code = sm_check_range(p.density, 1e-30, 1e30, "density", error);
-    if (!code) code = sm_check_range(p.stiffness_damping, 0, 1e6, "stiffness_damping", error);
-    if (!code && p.modes) code = sm_check_range(p.modes, 7, 1000, "modes", error);
-    if (!code && p.nodes) code = sm_check_range((double)p.nodes, 8, 1e6, "nodes", error);
-    if (!code && p.points)
-        code = sm_check_range((double)p.points, REF_LEAST_POINTS, REF_MOST_POINTS, "points", error);
     if (code) return code;
     *to = (RefMeshlessOptions){.mesh = &surface->mesh,
                                .points = p.points,
@@ -223,7 +255,65 @@ static int take_meshless(const sb_meshless_params *from, const sb_mesh *surface,
                                .modes = p.modes,
                                .material = {p.young, p.poisson, p.density},
                                .stiffness_damping = p.stiffness_damping};
-    return SB_OK;
+    code = check_material(&to->material, p.stiffness_damping, p.nodes, error);
+    if (!code && p.modes) code = sm_check_range(p.modes, 7, 1000, "modes", error);
+    if (!code && p.points)
+        code = sm_check_range((double)p.points, REF_LEAST_POINTS, REF_MOST_POINTS, "points", error);
+    return code;
+}
+
+/* No pressure is to make a shell faster than may be written, in one step. */
+static int check_pressure(const RefMeshlessOptions *shell, double h, double cell, sb_error *error)
+{
+    SmBox box = sm_box_around(shell->mesh->vertex_count, shell->mesh->position);
+    double thin = shell->thickness > 0 ? shell->thickness : REF_SHELL_THIN * sm_box_longest(&box);
+    double most = SB_FAR * cell / (h * h) * thin * shell->material.density;
+    if (fabs(shell->pressure) <= most) return SB_OK;
+    return sm_refuse(error, SB_USAGE,
+                     "'pressure' is %g: above %g, it moves the shell by 1e9 cells in a step",
+                     shell->pressure, most);
+}
+
+static int take_shell(const sb_body_params *body, double cell, const sb_mesh *surface,
+                      RefMeshlessOptions *to, sb_error *error)
+{
+    const sb_shell_params *from = body->shell;
+    sb_shell_params p;
+    sb_shell_params_init(&p, sizeof p);
+    int code = from ? sm_take_params(from, &p, sizeof p, "sb_shell_params", error) : SB_OK;
+    if (code) return code;
+    *to = (RefMeshlessOptions){.mesh = &surface->mesh,
+                               .nodes = p.nodes,
+                               .thickness = p.thickness,
+                               .covers = p.covers,
+                               .strength = p.strength,
+                               .branching = p.branching,
+                               .pressure = p.pressure,
+                               .pulse = p.pulse,
+                               .material = {p.young, p.poisson, p.density},
+                               .stiffness_damping = p.stiffness_damping};
+    code = check_material(&to->material, p.stiffness_damping, p.nodes, error);
+    if (!code) code = sm_check_range(p.thickness, 0, 1e30, "thickness", error);
+    if (!code) code = sm_check_range(p.covers, 0, MOST_COVERS, "covers", error);
+    if (!code) code = sm_check_range(p.strength, 0, 1e30, "strength", error);
+    if (!code) code = sm_check_range(p.branching, 0, 1e6, "branching", error);
+    if (!code) code = sm_check_range(p.pulse, 0, 1e9, "pulse", error);
+    return code ? code : check_pressure(to, body->h, cell, error);
+}
+
+/* What one engine alone asks. */
+static int take_own(const sb_body_params *p, double cell, const sb_mesh *surface,
+                    OctOptions *octree, RefMeshlessOptions *meshless, sb_error *error)
+{
+    int code = take_octree(p->octree, octree, error);
+    if (code || (p->engine != SB_MESHLESS && p->engine != SB_THIN_SHELL)) return code;
+    if (!surface)
+        return sm_refuse(error, SB_USAGE, "'surface' is NULL: the engine %s makes a body of it",
+                         sb_engine_name(p->engine));
+    code = check_elastic(p, error);
+    if (code) return code;
+    return p->engine == SB_MESHLESS ? take_meshless(p->meshless, surface, meshless, error)
+                                    : take_shell(p, cell, surface, meshless, error);
 }
 
 static SmEngineParams engine_params(const sb_body_params *p, const SmEngineType *type,
@@ -287,9 +377,7 @@ int sb_body_create(const sb_voxels *voxels, const sb_mesh *surface, const sb_bod
     if (!code) code = check_engine(&p, error);
     if (!code) code = check_choices(&p, error);
     if (!code) code = check_sizes(&p, &voxels->voxels, error);
-    if (!code) code = take_octree(p.octree, &octree, error);
-    if (!code && p.engine == SB_MESHLESS)
-        code = take_meshless(p.meshless, surface, &meshless, error);
+    if (!code) code = take_own(&p, voxels->voxels.cell, surface, &octree, &meshless, error);
     if (code) return code;
     const SmEngineType *type = engines[p.engine].type[p.precision];
     SmEngineParams inner = engine_params(&p, type, &octree, &meshless);
@@ -304,7 +392,8 @@ int sb_body_create(const sb_voxels *voxels, const sb_mesh *surface, const sb_bod
         free(made);
         return sm_done(failed, &why, error);
     }
-    complete(made, voxels, surface, type->cut ? inner.strain_limit : 0);
+    bool follows = type->links && type->pieces; /* the surface does, where links break */
+    complete(made, voxels, surface, follows ? inner.strain_limit : 0);
     *body = made;
     return sm_done(SM_OK, NULL, error);
 }
@@ -342,10 +431,11 @@ static void bind(sb_body *body)
     free(obstacle);
 }
 
-/* Where links have broken by strain the surface comes apart. */
+/* Where links have broken by strain, or cracks have grown, the surface comes apart. */
 static void follow_tears(sb_body *body)
 {
     long first = sm_skin_cut_triangles(&body->skin);
+    sm_skin_draw(&body->skin);
     if (!sm_skin_tear(&body->skin)) return;
     int team = sm_team_enter(body->threads);
     sm_skin_follow_cut(&body->skin, first);
@@ -386,17 +476,27 @@ int sb_body_count(const sb_body *body, sb_body_counts *counts, size_t size, sb_e
                           .cut_triangles = sm_skin_cut_triangles(&body->skin),
                           .surface_vertices = body->skin.surface.vertex_count,
                           .surface_triangles = body->skin.surface.triangle_count,
-                          .surface_incomplete = body->skin.incomplete};
+                          .surface_incomplete = body->skin.incomplete,
+                          .stopped = from.stopped};
     sm_give(&all, sizeof all, counts, size);
     return sm_done(SM_OK, NULL, error);
 }
 
 /* ---- particles */
 
+/* Refuses what the body's engine has not. */
+static int check_has(const sb_body *body, bool has, const char *lacks, sb_error *error)
+{
+    if (has) return SB_OK;
+    return sm_refuse(error, SB_USAGE, "the engine %s %s", body->type->name, lacks);
+}
+
 int sb_body_read(sb_body *body, int field, double *values, int64_t room, sb_error *error)
 {
     int code = sm_check_handle(body, SB_IS_BODY, error);
     if (!code) code = sm_check_range(field, SB_REST, SB_GOAL, "field", error);
+    if (!code && field == SB_GOAL)
+        code = check_has(body, body->type->goals, "matches no shapes: it has no goals", error);
     if (!code) code = sm_check_array(values, room, body->particles, "values", error);
     if (code) return code;
     if (field == SB_GOAL) body->type->goals(body->engine);
@@ -407,6 +507,11 @@ int sb_body_read(sb_body *body, int field, double *values, int64_t room, sb_erro
 int sb_body_write(sb_body *body, int field, const double *values, int64_t count, sb_error *error)
 {
     int code = sm_check_handle(body, SB_IS_BODY, error);
+    if (!code)
+        code = check_has(body, body->type->set,
+                         "moves nodes that carry particles, which cannot be put elsewhere: use "
+                         "handles and pushes",
+                         error);
     if (!code) code = sm_check_range(field, SB_POSITION, SB_VELOCITY, "field", error);
     if (!code && count != body->particles)
         code = sm_refuse(error, SB_USAGE, "'count' is %lld, and the body has %ld particles",
@@ -476,6 +581,9 @@ int sb_body_read_region(sb_body *body, int64_t particle, int64_t *member, int64_
                         int64_t *count, sb_error *error)
 {
     int code = sm_check_handle(body, SB_IS_BODY, error);
+    if (!code)
+        code = check_has(body, body->type->region,
+                         "matches no shapes: it has no regions of particles", error);
     if (!code) code = check_particles(body, 1, &particle, error);
     if (!code) code = sm_check_list(member, room, count, "member", error);
     if (code) return code;

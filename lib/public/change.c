@@ -100,7 +100,7 @@ static int change_octree(sb_body *body, void (*change)(Batch *batch, void *of), 
 static int check_cuttable(const sb_body *body, sb_error *error)
 {
     int code = sm_check_handle(body, SB_IS_BODY, error);
-    if (code || body->skin.octree || body->x0) return code;
+    if (code || body->skin.octree || (body->x0 && body->type->cut)) return code;
     return sm_refuse(error, SB_USAGE,
                      "the body was not made to be cut: create it with 'cuttable' 1");
 }
@@ -273,6 +273,11 @@ int sb_body_read_pieces(sb_body *body, int *piece, int64_t room, int64_t *count,
     if (!code) code = sm_check_given(count, "count", error);
     if (code) return code;
     long own = body->particles / body->instances;
+    if (body->skin.drawn)
+        return sm_refuse(error, SB_USAGE,
+                         "the engine %s does not count pieces of what cracks: take those that the "
+                         "surface's triangles hang together in",
+                         body->type->name);
     code = sm_check_array(piece, room, own, "piece", error);
     if (code) return code;
     SmPieces pieces;
@@ -291,7 +296,8 @@ static int check_octree(const sb_body *body, sb_error *error)
 {
     int code = sm_check_handle(body, SB_IS_BODY, error);
     if (code || body->skin.octree) return code;
-    return sm_refuse(error, SB_USAGE, "a body of fastlsm has no cells to split: use SB_OCTREE");
+    return sm_refuse(error, SB_USAGE, "a body of %s has no cells to split: use SB_OCTREE",
+                     body->type->name);
 }
 
 int sb_body_add_detail(sb_body *body, int *detail, sb_error *error)

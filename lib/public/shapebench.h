@@ -45,11 +45,11 @@
  * Costs are given where they are more than O(what is copied).
  *
  * Engines. Two are fast, in single and double precision: "fastlsm" (Rivers and James 2007) and
- * "octree" (Steinemann, Otaduy and Gross 2008). Two are references, in double precision: "brute",
- * shape matching without fast sums, to check others by, and "meshless", an elastic solid (Guo and
- * Qin 2009), which a library that was built without CHOLMOD and ARPACK has not. One that is the
- * core alone (SHAPEBENCH_CORE) has neither reference and reads no mesh files. What an engine does
- * not do is refused with a line. */
+ * "octree" (Steinemann, Otaduy and Gross 2008). Three are references, in double precision: "brute",
+ * shape matching without fast sums, to check others by, and "meshless" and "shell", elastic solids
+ * and thin shells (Guo and Qin 2009), which a library that was built without CHOLMOD and ARPACK has
+ * not. One that is the core alone (SHAPEBENCH_CORE) has no reference and reads no mesh files. What
+ * an engine does not do is refused with a line. */
 #ifndef SHAPEBENCH_H
 #define SHAPEBENCH_H
 
@@ -88,9 +88,9 @@ typedef struct {
 int sb_version(void);
 const char *sb_version_text(void);
 
-enum { SB_FASTLSM, SB_OCTREE, SB_BRUTE, SB_MESHLESS }; /* engines */
+enum { SB_FASTLSM, SB_OCTREE, SB_BRUTE, SB_MESHLESS, SB_THIN_SHELL }; /* engines */
 
-/* "fastlsm", "octree", "brute", "meshless"; NULL of any other number. */
+/* "fastlsm", "octree", "brute", "meshless", "shell"; NULL of any other number. */
 const char *sb_engine_name(int engine);
 
 /* 1 if sb_body_create() can make bodies of this engine, else 0. */
@@ -284,9 +284,31 @@ typedef struct {
     int modes;                      /* natural ones, 7 to 1000; 0: 64 */
 } sb_meshless_params;
 
+/* What a thin shell asks beyond what all do. Units are the mesh's, kg and s: pascals where it is in
+ * metres. Defaults: 1e5, 0.3 and 1000, and else 0.
+ *
+ * The body is its surface, closed, with rims, or a plate; its particles are the mesh's vertices,
+ * carried by nodes. With a strength it cracks, and then its surface is two sheets a thickness
+ * apart, the outer one's vertices before the inner one's, which come apart along cracks: after each
+ * call of sb_body_step() in which any grew it has other vertices, and triangles of them. Steps
+ * allocate where cracks grow. */
 typedef struct {
     size_t size;
-    int engine;    /* SB_FASTLSM, SB_OCTREE, SB_BRUTE, SB_MESHLESS */
+    double young, poisson, density; /* Young's modulus; Poisson's ratio, -0.99 to 0.49 */
+    double stiffness_damping;       /* Rayleigh's b, s */
+    int64_t nodes;                  /* wanted; 0: 450 */
+    double thickness;               /* 0: a hundredth of the mesh's longest extent */
+    double covers;    /* how wide nodes' linear functions are, in edges of their cells, to 12 (3 in
+                       * the paper); 0: quadratic ones, six edges wide */
+    double strength;  /* it cracks where its largest principal stress is above this; 0: never */
+    double branching; /* times the strength from which on a crack goes on in two; 0: never */
+    double pressure;  /* inside a closed one, along its normals at rest, */
+    double pulse;     /* for so many seconds from the beginning */
+} sb_shell_params;
+
+typedef struct {
+    size_t size;
+    int engine;    /* SB_FASTLSM, SB_OCTREE, SB_BRUTE, SB_MESHLESS, SB_THIN_SHELL */
     int precision; /* SB_SINGLE (twice as fast) or SB_DOUBLE */
     int w;         /* half-width of FastLSM's regions in cells, 1 to 31: larger is stiffer */
     int threads;   /* 0: OpenMP's number */
@@ -303,22 +325,27 @@ typedef struct {
     int collide_self, collide_instances; /* 1: the body with itself; instances with each other */
     double collide_friction;             /* share of tangential velocity lost on contact, 0 to 1 */
     int64_t instances;  /* bodies of the same voxels, which share memory; 0 means 1 */
-    const double *pose; /* [instances][12], from rest to where each starts; NULL: at rest */
-    const double *mass; /* [particles of the voxels] kg; NULL: 1 each; of the octree, 1 a cell */
+    const double *pose; /* [instances][12], from rest to where each starts; NULL: at rest. Of
+                         * meshless bodies and shells a translation */
+    const double *mass; /* [particles of the voxels] kg; NULL: 1 each; of the octree, 1 a cell; what
+                         * meshless bodies and shells weigh their density says */
     const sb_octree_params *octree;     /* SB_OCTREE; NULL: the defaults */
     const sb_meshless_params *meshless; /* SB_MESHLESS; NULL: the defaults */
+    const sb_shell_params *shell;       /* SB_THIN_SHELL; NULL: the defaults */
 } sb_body_params;
 
 /* FastLSM in single precision, w 2, h 0.01 s, no gravity, one instance, all cores. */
 void sb_body_params_init(sb_body_params *params, size_t size);
 void sb_octree_params_init(sb_octree_params *params, size_t size);
 void sb_meshless_params_init(sb_meshless_params *params, size_t size);
+void sb_shell_params_init(sb_shell_params *params, size_t size);
 
 /* Creates a body, at rest. `surface` is a mesh that it carries, usually that of the voxels, or
- * NULL; a meshless body is made of it, closed. SB_INPUT: an engine that is not here, or parameters
- * that it refuses; SB_USAGE: others out of range, or the environment variable SHAPEBENCH_ISA names
- * an instruction set that this processor lacks (unset: its best is taken). The line says which.
- * O(particles), up to a few microseconds each. */
+ * NULL; a meshless body is made of it, closed, and a shell, of one component, which has no part of
+ * the voxels. SB_INPUT: an engine that is not here, or parameters that it refuses; SB_USAGE: others
+ * out of range, or the environment variable SHAPEBENCH_ISA names an instruction set that this
+ * processor lacks (unset: its best is taken). The line says which. O(particles), up to a few
+ * microseconds each. */
 int sb_body_create(const sb_voxels *voxels, const sb_mesh *surface, const sb_body_params *params,
                    sb_body **body, sb_error *error);
 void sb_body_free(sb_body *body);
@@ -344,6 +371,7 @@ typedef struct {
     int64_t surface_vertices, surface_triangles; /* of one instance; both 0 without a surface */
     int surface_incomplete; /* 1: some of a cut could not be made in the surface, which crosses
                              * itself there; the material is cut all the same */
+    int stopped;            /* 1: a crack of a shell could not be followed: it stands still */
 } sb_body_counts;
 
 /* Fills the first `size` bytes of `counts`. Octree and cuts: numbers change with resampling. */
@@ -354,11 +382,13 @@ enum { SB_REST, SB_POSITION, SB_VELOCITY, SB_GOAL };
 /* Three numbers a particle, `room` particles at least. FastLSM's particles are the lattice's
  * vertices (sb_voxels_read_particles()), the octree's are simulation nodes, in the middle of their
  * cells at rest. SB_REST has the instances' poses in it. SB_GOAL are goal positions (fastlsm eq.
- * 12) of the present positions, which costs a match, about half a step. */
+ * 12) of the present positions, which costs a match, about half a step; of a shell, whose particles
+ * are its mesh's vertices, SB_USAGE. */
 int sb_body_read(sb_body *body, int field, double *values, int64_t room, sb_error *error);
 
 /* Sets SB_POSITION or SB_VELOCITY of all particles; `count` must be their number. Positions must be
- * within 1e9 cells of the body's rest, velocities within 1e9 cells a step. */
+ * within 1e9 cells of the body's rest, velocities within 1e9 cells a step. SB_USAGE of a shell,
+ * which handles and pushes move. */
 int sb_body_write(sb_body *body, int field, const double *values, int64_t count, sb_error *error);
 
 /* Adds impulse / mass to the velocities of some particles, N s: a force f over the next step is the
@@ -370,7 +400,7 @@ int sb_body_push(sb_body *body, int64_t count, const int64_t *particle, const do
 int sb_body_read_masses(sb_body *body, double *mass, int64_t room, sb_error *error);
 
 /* Members of a particle's region, rising. `count` receives how many there are; at most `room` are
- * written, and fewer than there are is no error. */
+ * written, and fewer than there are is no error. SB_USAGE of a shell, which has none. */
 int sb_body_read_region(sb_body *body, int64_t particle, int64_t *member, int64_t room,
                         int64_t *count, sb_error *error);
 
@@ -402,7 +432,8 @@ int sb_body_move_handle(sb_body *body, int handle, const double pose[12], sb_err
 int sb_body_remove_handle(sb_body *body, int handle, sb_error *error);
 
 /* ---- obstacles, which do not move; `friction` is the share of tangential velocity lost on
- * contact, 0 to 1. Thin ones stop only what moves by less than half their thickness in a step. */
+ * contact, 0 to 1. Thin ones stop only what moves by less than half their thickness in a step.
+ * SB_USAGE of meshless bodies and shells, which nothing stops. */
 
 /* `normal` leads towards the free side; its length does not matter. */
 int sb_body_add_plane(sb_body *body, const double point[3], const double normal[3], double friction,
@@ -456,7 +487,7 @@ int sb_body_sweep_blade(sb_body *body, int blade, const double a[3], const doubl
 int sb_body_lift_blade(sb_body *body, int blade, sb_error *error);
 
 /* The piece, numbered from 0, that every particle of one instance is in; *count receives how many
- * there are. */
+ * there are. SB_USAGE of a shell that cracks. */
 int sb_body_read_pieces(sb_body *body, int *piece, int64_t room, int64_t *count, sb_error *error);
 
 /* ---- resampling an octree while it runs (octree section 5). Of a body of one instance with
@@ -490,7 +521,8 @@ int sb_body_read_levels(sb_body *body, int *level, int64_t room, sb_error *error
 int sb_body_read_surface(sb_body *body, double *position, double *normal, int64_t room,
                          sb_error *error);
 
-/* Triangles of one instance; the numbers of vertices stay through cuts, new ones follow. */
+/* Triangles of one instance; the numbers of vertices stay through cuts, new ones follow (but for
+ * a shell that cracks: sb_shell_params). */
 int sb_body_read_surface_triangles(const sb_body *body, int *triangle, int64_t room,
                                    sb_error *error);
 

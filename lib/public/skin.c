@@ -46,6 +46,7 @@ void sm_skin_create(const SmEngineType *type, SmEngine *engine, const SmVoxels *
     } else if (!type->vertices) {
         sm_embed_create(&skin->surface, voxels, &skin->embedding);
     }
+    sm_skin_draw(skin);
 }
 
 void sm_skin_free(SmSkin *skin)

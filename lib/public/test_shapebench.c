@@ -9,6 +9,7 @@
 #include "../../octree/surface/surface.h"
 #include "../../reference/brute.h"
 #include "../../reference/meshless/engine.h"
+#include "../../reference/meshless/shell_engine.h"
 #include "../../reference/meshless/solve/solver.h"
 #include "../mesh/import.h"
 #include "../shapes/shape.h"
@@ -98,6 +99,14 @@ static void small_meshless(sb_meshless_params *meshless)
     meshless->modes = 12;
 }
 
+static void small_shell(sb_shell_params *shell)
+{
+    sb_shell_params_init(shell, sizeof *shell);
+    shell->young = 2e5;
+    shell->nodes = 60;
+    shell->thickness = 0.02;
+}
+
 static sb_body *body_of(const sb_voxels *voxels, const sb_mesh *surface,
                         const sb_body_params *params)
 {
@@ -132,10 +141,12 @@ TEST(the_library_says_what_it_is)
     assert_int_equal(sb_version(), SHAPEBENCH_VERSION);
     assert_string_equal(sb_engine_name(SB_OCTREE), "octree");
     assert_null(sb_engine_name(-1));
-    assert_null(sb_engine_name(4));
+    assert_string_equal(sb_engine_name(SB_THIN_SHELL), "shell");
+    assert_null(sb_engine_name(5));
     assert_true(sb_engine_available(SB_FASTLSM) && sb_engine_available(SB_OCTREE));
     assert_true(sb_engine_available(SB_BRUTE));
     assert_int_equal(sb_engine_available(SB_MESHLESS), ref_solver_built);
+    assert_int_equal(sb_engine_available(SB_THIN_SHELL), ref_solver_built);
     int shapes, named = 0;
     sm_shapes(&shapes);
     while (sb_shape_name(named)) named++;
@@ -232,10 +243,11 @@ TEST(voxels_are_those_inside)
 
 /* ---- bodies against their engines */
 
-static const SmEngineType *const types[4][2] = {{&fastlsm_engine_f32, &fastlsm_engine_f64},
+static const SmEngineType *const types[5][2] = {{&fastlsm_engine_f32, &fastlsm_engine_f64},
                                                 {&octree_engine_f32, &octree_engine_f64},
                                                 {NULL, &ref_brute_engine},
-                                                {NULL, &ref_meshless_engine}};
+                                                {NULL, &ref_meshless_engine},
+                                                {NULL, &ref_shell_engine}};
 
 enum { STEPS = 12 };
 
@@ -253,7 +265,9 @@ static Motion motion_of(const sb_body_counts *counts)
 static void carry_inside(const SmEngineType *type, const SmEngine *engine, const SmVoxels *voxels,
                          const SmMesh *mesh, const double (*x)[3], double (*surface)[3])
 {
-    if (!type->refines) {
+    if (type->vertices) {
+        memcpy(surface, x, (size_t)mesh->vertex_count * sizeof *surface);
+    } else if (!type->refines) {
         SmEmbedding embedding;
         sm_embed_create(mesh, voxels, &embedding);
         sm_embed_apply(&embedding, x, surface, NULL);
@@ -273,8 +287,12 @@ static void move_inside(const SmEngineType *type, const SmVoxels *voxels, const 
                         const int64_t *held, int64_t count, Motion *to)
 {
     SmEngine *engine;
-    const RefMeshlessOptions meshless = {
-        .mesh = mesh, .points = 3000, .nodes = 60, .modes = 12, .material = {2e5, 0.3, 1000}};
+    const RefMeshlessOptions meshless = {.mesh = mesh,
+                                         .points = 3000,
+                                         .nodes = 60,
+                                         .modes = 12,
+                                         .thickness = 0.02,
+                                         .material = {2e5, 0.3, 1000}};
     SmEngineParams params = {.w = 2,
                              .h = 0.01,
                              .damping = 0.1,
@@ -296,7 +314,7 @@ static void move_inside(const SmEngineType *type, const SmVoxels *voxels, const 
     }
     type->get(engine, SM_POSITION, (double(*)[3])to->x);
     type->get(engine, SM_VELOCITY, (double(*)[3])to->v);
-    type->goals(engine);
+    if (type->goals) type->goals(engine);
     type->get(engine, SM_GOAL, (double(*)[3])to->g);
     carry_inside(type, engine, voxels, mesh, (const double(*)[3])to->x, (double(*)[3])to->surface);
     type->destroy(engine);
@@ -370,10 +388,13 @@ static void compare_motion(int engine, int precision)
     sm_voxelise(&inner_mesh, &(SmVoxelParams){SM_SOLID, 0, 500, false}, "", &inner, NULL);
     const SmEngineType *type = types[engine][precision];
     sb_meshless_params meshless;
+    sb_shell_params shell;
     small_meshless(&meshless);
+    small_shell(&shell);
     sb_body_params params = params_of(engine);
     params.precision = precision;
     params.meshless = &meshless;
+    params.shell = &shell;
     sb_body *body = body_of(voxels, mesh, &params);
     sb_body_counts counts = counts_of(body);
     int64_t *held = room_for(counts.particles, sizeof *held), count = select_top(body, held);
@@ -386,7 +407,7 @@ static void compare_motion(int engine, int precision)
     move_inside(type, &inner, &inner_mesh, held, count, &wanted);
     compare_field(body, SB_POSITION, wanted.x);
     compare_field(body, SB_VELOCITY, wanted.v);
-    compare_field(body, SB_GOAL, wanted.g);
+    if (type->goals) compare_field(body, SB_GOAL, wanted.g);
     compare_surface(body, wanted.surface);
     counts = counts_of(body);
     assert_int_equal(counts.steps, STEPS);
@@ -401,41 +422,67 @@ static void compare_motion(int engine, int precision)
 
 TEST(bodies_move_as_their_engines_do)
 {
-    for (int engine = SB_FASTLSM; engine <= SB_MESHLESS; engine++)
+    for (int engine = SB_FASTLSM; engine <= SB_THIN_SHELL; engine++)
         for (int precision = SB_SINGLE; precision <= SB_DOUBLE; precision++)
             if (types[engine][precision] && sb_engine_available(engine))
                 compare_motion(engine, precision);
 }
 
+/* What a shell has not: goals, regions, and particles that could be put anywhere. */
+static void shell_refuses(sb_body *body)
+{
+    sb_error error;
+    int64_t n = counts_of(body).particles, count;
+    double *x = read_field(body, SB_POSITION);
+    REFUSED(sb_body_read(body, SB_GOAL, x, n, &error), "no goals");
+    REFUSED(sb_body_write(body, SB_POSITION, x, n, &error), "handles and pushes");
+    REFUSED(sb_body_write(body, SB_VELOCITY, x, n, &error), "handles and pushes");
+    REFUSED(sb_body_read_region(body, 0, NULL, 0, &count, &error), "no regions");
+    REFUSED(sb_body_read_shapes(body, NULL, 9, &error), "'shape'");
+    REFUSED(sb_body_add_detail(body, &(int){0}, &error), "a body of shell");
+    double *after = read_field(body, SB_POSITION);
+    assert_memory_equal(x, after, (size_t)n * 24);
+    sm_free_all(x, after);
+}
+
 /* What a reference does not do is refused. */
 static void refuses_what_it_has_not(int engine)
 {
-    sb_mesh *mesh = shape("penguin");
+    static const double turned[12] = {0, 0, 1, 0, 0, 1, 0, 0, -1, 0, 0, 0};
+    bool elastic = engine != SB_BRUTE;
+    sb_mesh *mesh = shape("block");
     sb_voxels *voxels = voxels_of(mesh, 100);
     sb_body *body;
     sb_error error;
     sb_body_params params = params_of(engine);
     sb_meshless_params meshless;
+    sb_shell_params shell;
     int64_t count;
     int obstacle;
-    refused(sb_body_create(voxels, mesh, &params, &body, &error), SB_INPUT, &error,
-            "double precision only");
+    double mass[1000] = {0};
+    UNUSABLE(sb_body_create(voxels, mesh, &params, &body, &error), "double precision only");
     params.precision = SB_DOUBLE;
     params.cuttable = 1;
-    refused(sb_body_create(voxels, mesh, &params, &body, &error), SB_INPUT, &error,
-            "cuts no bodies");
+    UNUSABLE(sb_body_create(voxels, mesh, &params, &body, &error), "cuts no bodies");
     params.cuttable = 0;
     small_meshless(&meshless);
+    small_shell(&shell);
     params.meshless = TEST_FIGURES ? NULL : &meshless; /* all as it is without */
+    params.shell = &shell;
+    params.pose = turned;
+    if (elastic) UNUSABLE(sb_body_create(voxels, mesh, &params, &body, &error), "'pose' turns");
+    params.pose = NULL;
+    params.mass = mass;
+    if (elastic) UNUSABLE(sb_body_create(voxels, mesh, &params, &body, &error), "'density'");
+    params.mass = NULL;
     body = body_of(voxels, mesh, &params);
-    refused(sb_body_read_contacts(body, NULL, 0, &count, &error), SB_USAGE, &error,
-            "does not list contacts");
+    REFUSED(sb_body_read_contacts(body, NULL, 0, &count, &error), "does not list contacts");
     const double triangle[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
-    refused(sb_body_cut(body, 3, triangle, 1, (int[3]){0, 1, 2}, &error), SB_USAGE, &error,
-            "not made to be cut");
-    if (engine == SB_MESHLESS)
-        refused(sb_body_add_sphere(body, nowhere, 9, 0, &obstacle, &error), SB_USAGE, &error,
+    REFUSED(sb_body_cut(body, 3, triangle, 1, (int[3]){0, 1, 2}, &error), "not made to be cut");
+    if (elastic)
+        REFUSED(sb_body_add_sphere(body, nowhere, 9, 0, &obstacle, &error),
                 "obstacles do not stop");
+    if (engine == SB_THIN_SHELL) shell_refuses(body);
     sb_body_free(body);
     sb_voxels_free(voxels);
     sb_mesh_free(mesh);
@@ -443,8 +490,139 @@ static void refuses_what_it_has_not(int engine)
 
 TEST(references_refuse_what_they_do_not_do)
 {
-    for (int engine = SB_BRUTE; engine <= SB_MESHLESS; engine++)
+    for (int engine = SB_BRUTE; engine <= SB_THIN_SHELL; engine++)
         if (sb_engine_available(engine)) refuses_what_it_has_not(engine);
+}
+
+/* ---- shells that crack */
+
+/* A block that is blown up, in both ways. */
+static sb_body *bursting_body(const sb_mesh *mesh, const sb_voxels *voxels)
+{
+    sb_shell_params shell;
+    small_shell(&shell);
+    shell.covers = 4.5;
+    shell.strength = 1e4;
+    shell.branching = 2;
+    shell.pressure = 1e4;
+    shell.pulse = 0.01;
+    sb_body_params params = params_of(SB_THIN_SHELL);
+    params.precision = SB_DOUBLE;
+    params.h = 0.001;
+    params.shell = &shell;
+    return body_of(voxels, mesh, &params);
+}
+
+static SmEngine *bursting_engine(const SmMesh *mesh, const SmVoxels *voxels)
+{
+    const RefMeshlessOptions options = {.mesh = mesh,
+                                        .nodes = 60,
+                                        .thickness = 0.02,
+                                        .covers = 4.5,
+                                        .strength = 1e4,
+                                        .branching = 2,
+                                        .pressure = 1e4,
+                                        .pulse = 0.01,
+                                        .material = {2e5, 0.3, 1000}};
+    SmEngineParams params = {
+        .w = 2, .h = 0.001, .damping = 0.1, .gravity = {0, -9.81, 0}, .meshless = &options};
+    SmEngine *engine;
+    assert_int_equal(ref_shell_engine.create(voxels, &params, &engine, NULL), SM_OK);
+    return engine;
+}
+
+/* The body's surface, in place and at rest, is what the engine draws. */
+static void compare_drawn(sb_body *body, SmEngine *engine, SmMesh *drawn)
+{
+    ref_shell_engine.surface(engine, drawn);
+    sb_body_counts counts = counts_of(body);
+    int64_t vertices = counts.surface_vertices, triangles = counts.surface_triangles;
+    assert_int_equal(vertices, drawn->vertex_count);
+    assert_int_equal(triangles, drawn->triangle_count);
+    assert_int_equal(counts.stopped, 0);
+    double *found = room_for(vertices, 24), *wanted = room_for(vertices, 24);
+    int *triangle = room_for(triangles, 12);
+    OK(sb_body_read_surface_triangles(body, triangle, triangles, NULL));
+    assert_memory_equal(triangle, drawn->triangle, (size_t)triangles * 12);
+    OK(sb_body_read_surface_rest(body, found, vertices, NULL));
+    assert_memory_equal(found, drawn->position, (size_t)vertices * 24);
+    ref_shell_engine.surface_points(engine, (double(*)[3])wanted);
+    OK(sb_body_read_surface(body, found, NULL, vertices, NULL));
+    assert_memory_equal(found, wanted, (size_t)vertices * 24);
+    sm_free_all(found, wanted, triangle);
+}
+
+TEST(a_shell_comes_apart_as_in_its_engine)
+{
+    needs(ref_solver_built, "this library was built without CHOLMOD and ARPACK");
+    sb_error error;
+    sb_mesh *mesh = shape("block");
+    sb_voxels *voxels = voxels_of(mesh, 100);
+    SmMesh inner_mesh, drawn = {0};
+    SmVoxels inner;
+    sm_shape_mesh("block", &inner_mesh, NULL);
+    sm_voxelise(&inner_mesh, &(SmVoxelParams){SM_SOLID, 0, 100, false}, "", &inner, NULL);
+    sb_body *body = bursting_body(mesh, voxels);
+    SmEngine *engine = bursting_engine(&inner_mesh, &inner);
+    compare_drawn(body, engine, &drawn);
+    sb_body_counts before = counts_of(body);
+    assert_int_equal(before.surface_vertices, 2 * before.particles);
+    for (int call = 0; call < 4; call++) {
+        OK(sb_body_step(body, 4, NULL));
+        for (int step = 0; step < 4; step++) ref_shell_engine.step(engine, NULL);
+        compare_drawn(body, engine, &drawn);
+    }
+    sb_body_counts after = counts_of(body);
+    assert_int_equal(after.particles, before.particles);
+    assert_true(after.surface_vertices > before.surface_vertices);
+    int piece[1000];
+    int64_t count;
+    REFUSED(sb_body_read_pieces(body, piece, 1000, &count, &error), "pieces of what cracks");
+    ref_shell_engine.destroy(engine);
+    sb_body_free(body);
+    sb_voxels_free(voxels);
+    sb_mesh_free(mesh);
+    sm_voxels_free(&inner);
+    sm_mesh_free(&inner_mesh);
+    sm_mesh_free(&drawn);
+}
+
+TEST(shells_out_of_range_are_refused)
+{
+    needs(ref_solver_built, "this library was built without CHOLMOD and ARPACK");
+    sb_error error;
+    sb_mesh *mesh = shape("block");
+    sb_voxels *voxels = voxels_of(mesh, 100);
+    sb_body *body;
+    static const struct {
+        size_t place;
+        double value;
+        const char *text;
+    } bad[] = {
+        {offsetof(sb_shell_params, young), 0, "young"},
+        {offsetof(sb_shell_params, poisson), 0.5, "poisson"},
+        {offsetof(sb_shell_params, density), NAN, "density"},
+        {offsetof(sb_shell_params, stiffness_damping), -1, "stiffness_damping"},
+        {offsetof(sb_shell_params, thickness), -0.1, "thickness"},
+        {offsetof(sb_shell_params, covers), 13, "covers"},
+        {offsetof(sb_shell_params, strength), INFINITY, "strength"},
+        {offsetof(sb_shell_params, branching), -2, "branching"},
+        {offsetof(sb_shell_params, pressure), 1e30, "1e9 cells in a step"},
+        {offsetof(sb_shell_params, pressure), NAN, "pressure"},
+        {offsetof(sb_shell_params, pulse), NAN, "pulse"},
+    };
+    for (size_t n = 0; n < sizeof bad / sizeof *bad; n++) {
+        sb_shell_params shell;
+        small_shell(&shell);
+        memcpy((char *)&shell + bad[n].place, &bad[n].value, sizeof bad[n].value);
+        sb_body_params params = params_of(SB_THIN_SHELL);
+        params.precision = SB_DOUBLE;
+        params.shell = &shell;
+        REFUSED(sb_body_create(voxels, mesh, &params, &body, &error), bad[n].text);
+        assert_null(body);
+    }
+    sb_voxels_free(voxels);
+    sb_mesh_free(mesh);
 }
 
 TEST(what_is_written_is_read)
@@ -714,6 +892,17 @@ TEST(structs_of_other_versions_are_understood)
     OK(sb_body_count(body, (sb_body_counts *)particles, sizeof particles[0], &error));
     assert_true(particles[0] > 0 && particles[1] == -1);
     sb_body_free(body);
+    sb_body_params before_shells;
+    sb_body_params_init(&before_shells, offsetof(sb_body_params, shell));
+    before_shells.shell = (const sb_shell_params *)&before_shells; /* no such member: not read */
+    before_shells.engine = SB_THIN_SHELL;
+    before_shells.precision = SB_DOUBLE;
+    sb_mesh *mesh = shape("block");
+    if (sb_engine_available(SB_THIN_SHELL)) {
+        OK(sb_body_create(voxels, mesh, &before_shells, &body, &error));
+        sb_body_free(body);
+    }
+    sb_mesh_free(mesh);
     sb_body_params nothing = {0};
     REFUSED(sb_body_create(voxels, NULL, &nothing, &body, &error), "init");
     sb_voxels_free(voxels);
@@ -813,7 +1002,8 @@ TEST(parameters_out_of_range_are_refused)
     BAD(SB_USAGE, "engine", p.engine = 9);
     BAD(SB_INPUT, "brute", p.engine = SB_BRUTE);
     if (sb_engine_available(SB_MESHLESS))
-        BAD(SB_USAGE, "'surface'", p.engine = SB_MESHLESS, p.precision = SB_DOUBLE);
+        for (int engine = SB_MESHLESS; engine <= SB_THIN_SHELL; engine++)
+            BAD(SB_USAGE, "'surface'", p.engine = engine, p.precision = SB_DOUBLE);
     BAD(SB_USAGE, "precision", p.precision = 2);
     BAD(SB_INPUT, "w", p.w = 0);
     BAD(SB_INPUT, "w", p.w = 1000);

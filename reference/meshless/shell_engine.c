@@ -447,6 +447,7 @@ static void shell_count(SmEngine *engine, SmCounts *counts)
     *counts = (SmCounts){
         .particles = engine->count,
         .regions = warp->nodes,
+        .stopped = body->broke,
         .build_seconds = body->map.seconds + body->matrix_seconds + body->skin_seconds,
         .bytes = (long)(sizeof *engine + (size_t)warp->start[warp->cells] * sizeof *warp->slope +
                         (size_t)warp->near[warp->nodes] * sizeof *warp->lean +

@@ -1,5 +1,6 @@
 """Deformable bodies by shape matching: fast lattice shape matching (Rivers and James 2007), octree shape matching
-(Steinemann, Otaduy and Gross 2008), their double-precision reference, and meshless elastic solids (Guo and Qin 2009).
+(Steinemann, Otaduy and Gross 2008), their double-precision reference, and meshless elastic solids and thin shells (Guo and
+Qin 2009).
 
     import shapebench as sb
 
@@ -17,10 +18,10 @@ shapebench.results reads the files that the program shapebench writes."""
 
 from . import export, results
 from .body import (Blade, Body, Counts, Criterion, Detail, Handle, LocalWidth, MeshlessParams, Obstacle, OctreeParams,
-                   engines, pose)
+                   ShellParams, engines, pose)
 from .face import Error, InputError, UsageError, version as __version__
 from .geometry import Mesh, MeshFacts, VoxelFacts, Voxels, shapes
 
 __all__ = ["Blade", "Body", "Counts", "Criterion", "Detail", "Error", "Handle", "InputError", "LocalWidth", "Mesh",
-           "MeshFacts", "MeshlessParams", "Obstacle", "OctreeParams", "UsageError", "VoxelFacts", "Voxels", "__version__",
-           "engines", "export", "pose", "results", "shapes"]
+           "MeshFacts", "MeshlessParams", "Obstacle", "OctreeParams", "ShellParams", "UsageError", "VoxelFacts", "Voxels",
+           "__version__", "engines", "export", "pose", "results", "shapes"]

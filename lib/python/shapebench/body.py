@@ -20,7 +20,7 @@ Numbers = NDArray[np.int64]
 Ints = NDArray[np.int32]
 Choice = Union[str, int, None]  # of an enum: a member's name, without what all begin with, or its number
 
-CHOICES = {"engine": "SB_FASTLSM", "precision": "SB_SINGLE", "summation": "SB_SUM_FAST", "polar": "SB_POLAR_FAST",
+CHOICES = {"precision": "SB_SINGLE", "summation": "SB_SUM_FAST", "polar": "SB_POLAR_FAST",
            "layout": "SB_LAYOUT_AUTO", "kind": "SB_CELLS_ALL", "mass_rule": "SB_MASS_MATERIAL",
            "symmetry": "SB_SYMMETRY_UNION", "weighting": "SB_WEIGHT_CONSERVING", "goals": "SB_GOALS_GATHER"}
 
@@ -90,6 +90,25 @@ class MeshlessParams:
     modes: Optional[int] = None  # natural ones, 7 to 1000; 0: 64
 
 
+@dataclass
+class ShellParams:
+    """What a thin shell asks beyond what all engines do; sb_shell_params in shapebench.h. None: the library's default.
+    Units are the mesh's, kg and s: pascals where it is in metres. One that cracks has other vertices in its surface, of
+    two sheets a thickness apart, after each step() in which a crack grew."""
+
+    young: Optional[float] = None  # Young's modulus
+    poisson: Optional[float] = None  # Poisson's ratio, -0.99 to 0.49
+    density: Optional[float] = None
+    stiffness_damping: Optional[float] = None  # Rayleigh's b, s
+    nodes: Optional[int] = None  # wanted; 0: 450
+    thickness: Optional[float] = None  # 0: a hundredth of the mesh's longest extent
+    covers: Optional[float] = None  # width of nodes' linear functions, edges of their cells, to 12; 0: quadratic
+    strength: Optional[float] = None  # it cracks where its largest principal stress is above this; 0: never
+    branching: Optional[float] = None  # times the strength from which on a crack goes on in two; 0: never
+    pressure: Optional[float] = None  # inside a closed one, along its normals at rest,
+    pulse: Optional[float] = None  # for so many seconds from the beginning
+
+
 @dataclass(frozen=True)
 class Counts:
     """What a body is and has done; sb_body_counts in shapebench.h."""
@@ -109,16 +128,30 @@ class Counts:
     surface_vertices: int  # of one instance, like the next; both 0 without a surface
     surface_triangles: int
     surface_incomplete: int  # 1: some of a cut could not be made in the surface, which crosses itself there
+    stopped: int  # 1: a crack of a shell could not be followed: it stands still
+
+
+def _names() -> List[str]:
+    """Of all engines, by number."""
+    names: List[str] = []
+    while (name := face.text("sb_engine_name", len(names))) is not None:
+        names.append(name)
+    return names
+
+
+def _engine(engine: Choice) -> Choice:
+    """Its number; other numbers are the library's to judge."""
+    if not isinstance(engine, str):
+        return engine
+    names = _names()
+    if engine not in names:
+        raise face.UsageError(f"'engine' is '{engine}': it is one of {', '.join(names)}")
+    return names.index(engine)
 
 
 def engines() -> List[str]:
-    """Names of the engines of which this library can make bodies: "fastlsm", "octree", "brute", "meshless"."""
-    names, number = [], 0
-    while (name := face.text("sb_engine_name", number)) is not None:
-        if face.library().sb_engine_available(number):
-            names.append(name)
-        number += 1
-    return names
+    """Names of the engines of which this library can make bodies: "fastlsm", "octree", "brute", "meshless", "shell"."""
+    return [name for number, name in enumerate(_names()) if face.library().sb_engine_available(number)]
 
 
 def pose(translation: ArrayLike = (0, 0, 0), *, axis: ArrayLike = (0, 0, 1), angle: float = 0,
@@ -160,11 +193,12 @@ def _mass(mass: ArrayLike, voxels: Voxels) -> Doubles:
 
 
 class Body(Made):
-    """A deformable body of `voxels`, at rest, that may carry the mesh `surface`; a "meshless" body is made of it, closed.
+    """A deformable body of `voxels`, at rest, that may carry the mesh `surface`; a "meshless" body is made of it, closed,
+    and a "shell", of one component, whose particles are its vertices.
 
     What is None is the library's default, which is said here. O(particles), up to a few microseconds each.
 
-        engine             "fastlsm"; "octree", "brute", "meshless"
+        engine             "fastlsm"; "octree", and in double precision "brute", "meshless", "shell"
         precision          "single" (twice as fast); "double"
         w                  2; half-width of FastLSM's regions in cells, 1 to 31: larger is stiffer
         threads            0: OpenMP's number; any number gives the same bits
@@ -183,7 +217,8 @@ class Body(Made):
         instances          1; bodies of the same voxels, which share memory
         pose               at rest; [instances, 3, 4]: from rest to where each starts
         mass               1 each, of the octree 1 a cell; [particles of the voxels], kg
-        octree, meshless   what one of these engines asks beyond that
+        octree             what this engine asks beyond that,
+        meshless, shell    and what these do
 
     Use it with `with`, or close() it, to have its memory back at once; else it goes with the last reference.
 
@@ -200,8 +235,9 @@ class Body(Made):
                  polar: Choice = None, layout: Choice = None, collide_self: Optional[bool] = None,
                  collide_instances: Optional[bool] = None, collide_friction: Optional[float] = None,
                  instances: Optional[int] = None, pose: Optional[ArrayLike] = None, mass: Optional[ArrayLike] = None,
-                 octree: Optional[OctreeParams] = None, meshless: Optional[MeshlessParams] = None) -> None:
-        given = [("engine", engine), ("precision", precision), ("w", w), ("threads", threads), ("h", h),
+                 octree: Optional[OctreeParams] = None, meshless: Optional[MeshlessParams] = None,
+                 shell: Optional[ShellParams] = None) -> None:
+        given = [("engine", _engine(engine)), ("precision", precision), ("w", w), ("threads", threads), ("h", h),
                  ("gravity", gravity), ("damping", damping), ("damping_every", damping_every), ("cuttable", cuttable),
                  ("strain_limit", strain_limit), ("summation", summation), ("polar", polar), ("layout", layout),
                  ("collide_self", collide_self), ("collide_instances", collide_instances),
@@ -209,7 +245,8 @@ class Body(Made):
                  ("pose", None if pose is None else face.array(pose, np.float64, "pose", max(1, instances or 1), 12)),
                  ("mass", None if mass is None else _mass(mass, voxels)),
                  ("octree", octree and _octree(octree)),
-                 ("meshless", meshless and face.params("sb_meshless_params", _members(meshless), {}))]
+                 ("meshless", meshless and face.params("sb_meshless_params", _members(meshless), {})),
+                 ("shell", shell and face.params("sb_shell_params", _members(shell), {}))]
         params = face.params("sb_body_params", given, CHOICES)
         self._lock = threading.RLock()
         self._sizes: Optional[Counts] = None  # as long as nothing has changed them
@@ -251,7 +288,7 @@ class Body(Made):
     def step(self, steps: int = 1) -> None:
         """Steps of h seconds (fastlsm eqs. 1 and 2), all in one call. 20 to 200 ns a particle, step and thread."""
         with self._lock:
-            self._sizes = None  # links that break part the surface, too
+            self._sizes = None  # links and cracks that break part the surface, too
             self._call("sb_body_step", face.whole(steps, "steps"))
 
     def counts(self) -> Counts:
@@ -305,7 +342,8 @@ class Body(Made):
         return self._field("SB_VELOCITY", out)
 
     def goals(self, out: Optional[Doubles] = None) -> Doubles:
-        """[particles, 3]: goal positions (fastlsm eq. 12) of the present positions; about half a step."""
+        """[particles, 3]: goal positions (fastlsm eq. 12) of the present positions; about half a step. Not of a
+        shell."""
         return self._field("SB_GOAL", out)
 
     def _write(self, field: str, values: ArrayLike, name: str) -> None:
@@ -313,11 +351,11 @@ class Body(Made):
         self._call("sb_body_write", face.header.constant[field], face.pointer(rows), len(rows))
 
     def set_positions(self, positions: ArrayLike) -> None:
-        """Of all particles, within 1e9 cells of the body's rest."""
+        """Of all particles, within 1e9 cells of the body's rest; not of a shell, which handles and pushes move."""
         self._write("SB_POSITION", positions, "positions")
 
     def set_velocities(self, velocities: ArrayLike) -> None:
-        """Of all particles, within 1e9 cells a step."""
+        """Of all particles, within 1e9 cells a step; not of a shell."""
         self._write("SB_VELOCITY", velocities, "velocities")
 
     def push(self, particles: ArrayLike, impulses: ArrayLike) -> None:
@@ -332,7 +370,7 @@ class Body(Made):
         return self._read("sb_body_read_masses", out, np.float64, self._own)
 
     def region(self, particle: int) -> Numbers:
-        """Members of a particle's region, rising."""
+        """Members of a particle's region, rising; not of a shell."""
         return self._list("sb_body_read_region", np.int64, face.whole(particle, "particle"))
 
     def _list(self, name: str, kind: Any, *first: Any) -> NDArray[Any]:
@@ -373,7 +411,8 @@ class Body(Made):
         return self._read("sb_body_read_levels", None, np.int32, self._own)
 
     def pieces(self) -> Ints:
-        """[particles of one instance]: the piece that every particle is in, numbered from 0."""
+        """[particles of one instance]: the piece that every particle is in, numbered from 0; not of a shell that
+        cracks."""
         with self._lock:
             values = np.empty(self._own(), np.int32)
             self._number("sb_body_read_pieces", ctypes.c_int64, face.pointer(values), len(values))
@@ -442,7 +481,8 @@ class Body(Made):
         return values
 
     def surface_triangles(self) -> Ints:
-        """[m, 3] of one instance; the numbers of vertices stay through cuts, new ones follow."""
+        """[m, 3] of one instance; the numbers of vertices stay through cuts, new ones follow, but for a shell that
+        cracks."""
         return self._read("sb_body_read_surface_triangles", None, np.int32, lambda: self._size("surface_triangles"), 3)
 
     def surface_rest(self) -> Doubles:
