@@ -33,7 +33,6 @@ class LiveReport(PageCase):
         self.assertEqual(said[0], "")
         self.assertIn("is not built in", said[1])
 
-
     def test_it_fits_its_window(self):
         """At either width nothing but tables and figures scrolls sideways, in their boxes; at the wider no table must."""
         report = self.folder / "report.html"
