@@ -209,3 +209,92 @@ TEST(what_has_changed_is_seen)
     }
     plate_free(&plate);
 }
+
+/* A straight crack, by steps, that is ended where it does not meet another one. */
+static int crack_to(RefCracks *cracks, const double from[2], const double to[2], int parent)
+{
+    int arm = ref_cracks_start(cracks, from, parent);
+    for (int n = 1; n <= 8 && cracks->arm[arm].open; n++)
+        ref_cracks_grow(
+            cracks, arm,
+            (double[]){from[0] + (to[0] - from[0]) * n / 8, from[1] + (to[1] - from[1]) * n / 8});
+    if (cracks->arm[arm].open) ref_cracks_end(cracks, arm);
+    return arm;
+}
+
+/* Where cracks enclose no node, between four of them, the eight triangles there are crumbs: they
+ * are not drawn, the hole that they leave is closed, and what is beside does not hang on them. */
+TEST(crumbs_are_left_out)
+{
+    needs_solver();
+    static Plate plate;
+    const double middle[2] = {1, 0.5}, half = 0.035, over = 0.002; /* cells are 1/6 wide */
+    long pieces, crumbs = 0;
+    plate_create(false, &plate);
+    RefCracks *cracks = &plate.breaking.cracked.cracks;
+    for (int side = 0, arm = -1; side < 4;
+         side++) { /* each from the one before, the last to the first */
+        double c = side % 2 ? 0 : 1 - side, s = side % 2 ? 2 - side : 0, end[2][2];
+        for (int e = 0; e < 2; e++) {
+            double along = e ? half + over : side ? -half : -half - over;
+            end[e][0] = middle[0] + c * half - s * along;
+            end[e][1] = middle[1] + s * half + c * along;
+        }
+        arm = crack_to(cracks, end[0], end[1], arm);
+    }
+    assert_int_equal(ref_breaking_update(&plate.breaking, NULL), SM_OK);
+    assert_true(plate.breaking.cracked.counts.blind > 0);
+    assert_true(ref_torn_update(&plate.torn, &plate.breaking.cracked));
+    for (long t = 0; t < plate.torn.triangles; t++) {
+        bool within = true;
+        for (int d = 0; d < 2; d++) within &= fabs(plate.torn.middle[t][d] - middle[d]) < half;
+        assert_int_equal(plate.torn.crumb[t], within);
+        for (int k = 0; k < 3 && within; k++) /* crumbs need no copies */
+            assert_int_equal(plate.torn.corner[t][k], plate.triangle[t][k]);
+        crumbs += within;
+    }
+    assert_int_equal(crumbs, 8);
+    assert_int_equal(plate.torn.crumbs, crumbs);
+    SmMesh mesh = drawn(&plate, (const double(*)[3])plate.rest);
+    double area = length * (1 - (double)crumbs / (double)plate.torn.triangles);
+    assert_true(fabs(volume_of(&mesh, &pieces) / (area * thickness) - 1) < 1e-9);
+    assert_int_equal(pieces, 1);
+    sm_mesh_free(&mesh);
+    plate_free(&plate);
+}
+
+/* Two cracks end a little before they meet, so near that no function reaches through between them:
+ * the triangles there, which no crack parts, come apart with the pieces that they move with. */
+TEST(triangles_of_different_pieces_come_apart)
+{
+    needs_solver();
+    static Plate plate;
+    const double x = 29.0 / 24 + 0.003, y = 0.522333, gap = 1e-5;
+    long pieces, unparted = 0;
+    plate_create(false, &plate);
+    RefCracks *cracks = &plate.breaking.cracked.cracks;
+    crack_to(cracks, (double[]){x, -0.01}, (double[]){x, y - gap}, -1);
+    crack_to(cracks, (double[]){x, 1.01}, (double[]){x, y + gap}, -1);
+    assert_int_equal(ref_breaking_update(&plate.breaking, NULL), SM_OK);
+    assert_int_equal(plate.sheet.warp.pieces, 2);
+    assert_true(ref_torn_update(&plate.torn, &plate.breaking.cracked));
+    assert_int_equal(plate.torn.crumbs, 0);
+    check_corners(&plate.torn);
+    for (long t = 0; t < plate.torn.triangles; t++)
+        for (int k = 0; k < 3; k++) {
+            long beside = plate.torn.beside[t][k];
+            if (beside < 0) continue;
+            bool apart = (plate.torn.middle[t][0] < x) != (plate.torn.middle[beside][0] < x);
+            assert_int_equal(plate.torn.open[t][k], apart);
+            unparted +=
+                apart && !ref_cracks_part(cracks, plate.torn.middle[t], plate.torn.middle[beside]);
+        }
+    assert_true(unparted > 0);
+    SmMesh mesh = drawn(&plate, (const double(*)[3])plate.rest);
+    for (long n = 0; n < mesh.vertex_count; n++) /* apart, so that what is equal is two pieces */
+        mesh.position[n][1] += 1e-6 * (double)(n % (mesh.vertex_count / 2));
+    assert_true(fabs(volume_of(&mesh, &pieces) / (length * thickness) - 1) < 1e-2);
+    assert_int_equal(pieces, 2);
+    sm_mesh_free(&mesh);
+    plate_free(&plate);
+}
