@@ -178,21 +178,31 @@ static bool is_scene(const char *named, const char *scene)
     return !bench_scene_find(named, &found, NULL) && !strcmp(found.name, scene);
 }
 
-/* The scenes named, or all of the file. */
+/* Is the task the row's, or not yet any row's? */
+static bool fits(const BenchTask *task, const BenchRow *row)
+{
+    return (!task->engine || !strcmp(task->engine, row->engine)) &&
+           (!task->precision || !strcmp(task->precision, row->precision));
+}
+
+/* The scenes named, or all of the file, with every engine and precision that it has of them. */
 static void file_tasks(Session *session)
 {
     const Options *options = session->options;
     for (int i = 0; i < session->stored_count; i++) {
         const BenchRow *row = &session->stored[i];
-        bool there = options->scenes.count > 0;
-        for (int t = 0; t < session->tasks; t++) {
+        const char *scene = options->scenes.count ? NULL : row->scene;
+        bool there = false;
+        for (int t = 0; t < session->tasks && !there; t++) {
             BenchTask *task = &session->task[t];
-            bool same = options->scenes.count ? is_scene(task->scene, row->scene)
-                                              : !strcmp(task->scene, row->scene);
-            if (same && options->scenes.count) task_of_row(row, task);
-            there |= same;
+            if (options->scenes.count ? !is_scene(task->scene, row->scene)
+                                      : strcmp(task->scene, row->scene) != 0)
+                continue;
+            scene = task->scene;
+            there = fits(task, row);
+            if (there && options->scenes.count) task_of_row(row, task);
         }
-        if (!there) task_of_row(row, add_task(session, row->scene));
+        if (!there && scene) task_of_row(row, add_task(session, scene));
     }
 }
 
@@ -294,7 +304,7 @@ static SmCode add_file(Session *session, BenchBuild build, SmError *error)
     if (code) return code;
     for (int i = 0; i < count; i++) {
         if (!wanted(session->options, rows[i].scene)) continue;
-        BenchSide *side = &bench_ab_scene(&session->all, rows[i].scene)->side[build];
+        BenchSide *side = &bench_ab_scene(&session->all, &rows[i])->side[build];
         if (rows[i].valid && rows[i].busy && session->options->by == BY_TIME)
             snprintf(side->reason, sizeof side->reason, "it is BUSY there");
         else
@@ -330,10 +340,12 @@ static SmCode add_files(Session *session, SmError *error)
 static void add_stored(Session *session)
 {
     int measured = session->all.count;
-    for (int i = 0; i < session->stored_count; i++)
+    for (int i = 0; i < session->stored_count; i++) {
+        bool there = false;
         for (int c = 0; c < measured; c++)
-            if (!strcmp(session->all.scenes[c].scene, session->stored[i].scene))
-                bench_ab_add(&session->all, BENCH_OLD, 0, &session->stored[i]);
+            there |= !strcmp(session->all.scenes[c].scene, session->stored[i].scene);
+        if (there) bench_ab_add(&session->all, BENCH_OLD, 0, &session->stored[i]);
+    }
 }
 
 /* Are there counters in all scenes that both builds have? */
@@ -390,7 +402,9 @@ static SmCode measure(Session *session, SmError *error)
                       : bench_ab_run(&rounds, &session->all, found->machine, error);
     if (code) return code;
     add_stored(session);
-    return options->counters ? take_counters(session, &rounds, error) : SM_OK;
+    if (options->counters) code = take_counters(session, &rounds, error);
+    bench_ab_finish(&session->all);
+    return code;
 }
 
 static void print_found(FILE *file, const void *what)

@@ -94,7 +94,7 @@ static SmCode keep(Session *session, State *state, BenchBuild build, int round, 
                        bench_build_names[build], why.text);
     for (int i = 0; i < count; i++) {
         bench_ab_add(session->all, build, round, &rows[i]);
-        say_why(state, bench_ab_scene(session->all, rows[i].scene));
+        say_why(state, bench_ab_scene(session->all, &rows[i]));
         if (session->runner->by_cycles && rows[i].valid && !bench_row_counted(&rows[i]))
             state->there[BENCH_OLD] = state->there[BENCH_NEW] = false;
     }

@@ -34,19 +34,65 @@ double bench_side_counter(const BenchSide *side, BenchCounter counter)
     return counter == BENCH_INSTRUCTIONS ? side->instructions : NAN;
 }
 
-BenchAbScene *bench_ab_scene(BenchAbSamples *all, const char *scene)
+/* Old files may not say. */
+static bool same_or_unsaid(const char *a, const char *b)
+{
+    return !*a || !*b || !strcmp(a, b);
+}
+
+BenchAbScene *bench_ab_scene(BenchAbSamples *all, const BenchRow *row)
+{
+    BenchAbScene *samples = NULL;
+    for (int i = 0; i < all->count && !samples; i++) {
+        BenchAbScene *s = &all->scenes[i];
+        if (!strcmp(s->scene, row->scene) && same_or_unsaid(s->engine, row->engine) &&
+            same_or_unsaid(s->precision, row->precision))
+            samples = s;
+    }
+    if (!samples) {
+        all->scenes = sm_realloc(all->scenes, (size_t)all->count + 1, sizeof *all->scenes);
+        samples = &all->scenes[all->count++];
+        *samples = (BenchAbScene){
+            .side = {{.valid = true, .instructions = NAN}, {.valid = true, .instructions = NAN}}};
+        snprintf(samples->scene, sizeof samples->scene, "%s", row->scene);
+    }
+    if (!*samples->engine) memcpy(samples->engine, row->engine, sizeof samples->engine);
+    if (!*samples->precision) memcpy(samples->precision, row->precision, sizeof row->precision);
+    return samples;
+}
+
+/* Measured on that build alone, and nothing says why. */
+static bool alone(const BenchAbScene *samples, BenchBuild build)
+{
+    const BenchSide *other = &samples->side[!build];
+    return samples->side[build].count && !other->count && !other->reason[0];
+}
+
+static void say_which(BenchAbScene *samples)
+{
+    size_t length = strlen(samples->scene);
+    snprintf(samples->scene + length, sizeof samples->scene - length, " (%s, %s)", samples->engine,
+             samples->precision);
+}
+
+void bench_ab_finish(BenchAbSamples *all)
 {
     for (int i = 0; i < all->count; i++)
-        if (!strcmp(all->scenes[i].scene, scene)) return &all->scenes[i];
-    all->scenes = sm_realloc(all->scenes, (size_t)all->count + 1, sizeof *all->scenes);
-    BenchAbScene *samples = &all->scenes[all->count++];
-    memset(samples, 0, sizeof *samples);
-    snprintf(samples->scene, sizeof samples->scene, "%s", scene);
-    for (int b = 0; b < BENCH_BUILDS; b++) {
-        samples->side[b].valid = true;
-        samples->side[b].instructions = NAN;
-    }
-    return samples;
+        for (int j = 0; j < all->count && alone(&all->scenes[i], BENCH_OLD); j++) {
+            BenchAbScene *now = &all->scenes[j];
+            if (strcmp(all->scenes[i].scene, now->scene) != 0 || !alone(now, BENCH_NEW)) continue;
+            all->scenes[i].side[BENCH_NEW] = now->side[BENCH_NEW];
+            memmove(now, now + 1, (size_t)(--all->count - j) * sizeof *now);
+            if (j < i) i--;
+            break;
+        }
+    bool *shared = sm_alloc((size_t)all->count + 1, sizeof *shared);
+    for (int i = 0; i < all->count; i++)
+        for (int j = 0; j < i; j++)
+            if (!strcmp(all->scenes[i].scene, all->scenes[j].scene)) shared[i] = shared[j] = true;
+    for (int i = 0; i < all->count; i++)
+        if (shared[i]) say_which(&all->scenes[i]);
+    free(shared);
 }
 
 /* Room for one process more, and its repeats. */
@@ -70,7 +116,7 @@ static double value_of(const BenchRow *row, int repeat, int value)
 
 void bench_ab_add(BenchAbSamples *all, BenchBuild build, int round, const BenchRow *row)
 {
-    BenchSide *side = &bench_ab_scene(all, row->scene)->side[build];
+    BenchSide *side = &bench_ab_scene(all, row)->side[build];
     if (side->count == 0) {
         side->row = *row;
         side->row.total = NULL;

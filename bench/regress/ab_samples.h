@@ -31,8 +31,10 @@ typedef struct {
     double instructions; /* a step, by Valgrind; NaN: not counted */
 } BenchSide;
 
+/* One with one engine in one precision. */
 typedef struct {
-    char scene[64];
+    char scene[112];                /* the rows' name of it; see bench_ab_finish() */
+    char engine[24], precision[12]; /* the rows', or empty where none says */
     BenchSide side[BENCH_BUILDS];
 } BenchAbScene;
 
@@ -52,15 +54,20 @@ typedef struct {
     int count;
 } BenchAbSamples;
 
-/* Those of that scene, added where there are none. Pointers to scenes from before are then
- * no longer valid. */
-BenchAbScene *bench_ab_scene(BenchAbSamples *all, const char *scene);
+/* Those of the row's scene, engine and precision, added where there are none. Pointers to scenes
+ * from before are then no longer valid. */
+BenchAbScene *bench_ab_scene(BenchAbSamples *all, const BenchRow *row);
 
 /* Adds a process's row, of which nothing is kept but copies. */
 void bench_ab_add(BenchAbSamples *all, BenchBuild build, int round, const BenchRow *row);
 
 /* The same of every repeat as if it were a process: of a stored file, which has but one. */
 void bench_ab_add_repeats(BenchAbSamples *all, BenchBuild build, const BenchRow *row);
+
+/* When all rows are added: a scene whose engine or precision has changed from one build to the
+ * other is one again, of other work, and scenes that several engines or precisions share say which.
+ */
+void bench_ab_finish(BenchAbSamples *all);
 
 void bench_ab_free(BenchAbSamples *all);
 

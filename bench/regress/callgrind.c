@@ -106,6 +106,8 @@ static BenchTask task_of(const BenchAbRunner *runner, const BenchAbScene *sample
         if (bench_scene_find(runner->task[t].scene, &scene, NULL)) continue;
         if (!strcmp(scene.name, samples->scene)) task = runner->task[t];
     }
+    if (samples->engine[0]) task.engine = samples->engine;
+    if (samples->precision[0]) task.precision = samples->precision;
     return task;
 }
 

@@ -72,6 +72,13 @@ static void play(BenchAbSamples *all, const char *scene, int rounds, double fact
     }
 }
 
+static BenchAbScene *scene_of(BenchAbSamples *all, const char *scene)
+{
+    BenchRow row = {0};
+    snprintf(row.scene, sizeof row.scene, "%s", scene);
+    return bench_ab_scene(all, &row);
+}
+
 static BenchComparisonVerdict verdict_of(const BenchComparison *list, int count, const char *scene,
                                          int time)
 {
@@ -180,10 +187,10 @@ TEST(what_cannot_be_compared_says_why)
     play(&all, "wrong", 5, 2, 0.02);
     play(&all, "other", 5, 2, 0.02);
     for (int i = 0; i < 10; i++) add(&all, BENCH_NEW, i / 2, "young", 1, 1);
-    BenchSide *wrong = &bench_ab_scene(&all, "wrong")->side[BENCH_NEW];
+    BenchSide *wrong = &scene_of(&all, "wrong")->side[BENCH_NEW];
     wrong->valid = false;
     strcpy(wrong->reason, "goals are off by 1 cell");
-    bench_ab_scene(&all, "other")->side[BENCH_OLD].row.particles = 149;
+    scene_of(&all, "other")->side[BENCH_OLD].row.particles = 149;
     const BenchCompareParams params = {true, 3, NAN, 1, false, false};
     int count = bench_compare(&all, &params, &list);
     assert_int_equal(verdict_of(list, count, "few", 0), BENCH_TOO_FEW);
@@ -232,6 +239,63 @@ TEST(what_nobody_could_judge_is_not_ok)
     assert_int_equal(bench_comparisons_exit(NULL, 0), BENCH_EXIT_NOT_JUDGED);
 }
 
+/* A scene with an engine in a precision, one process of each build, which takes so long. */
+static void add_as(BenchAbSamples *all, BenchBuild build, const char *engine, const char *precision,
+                   double seconds)
+{
+    double total[1] = {seconds}, stage[1][SM_STAGES] = {{seconds}};
+    BenchRow row = {
+        .scene = "one", .valid = true, .repeats = 1, .total = total, .stage = stage, .threads = 1};
+    snprintf(row.engine, sizeof row.engine, "%s", engine);
+    snprintf(row.precision, sizeof row.precision, "%s", precision);
+    bench_ab_add(all, build, 0, &row);
+}
+
+/* A scene's rows of several engines and precisions are apart, and say which they are; those of a
+ * file that names none are any one's; an engine that has become another is other work. */
+TEST(engines_and_precisions_of_a_scene_are_apart)
+{
+    static const char *const of[3][2] = {
+        {"octree", "single"}, {"octree", "double"}, {"fastlsm", "single"}};
+    BenchAbSamples all = {0};
+    for (int b = 0; b < BENCH_BUILDS; b++)
+        for (int n = 0; n < 3; n++) {
+            int k = b ? 2 - n : n; /* in any order */
+            add_as(&all, (BenchBuild)b, of[k][0], of[k][1], 1 + k);
+        }
+    assert_int_equal(all.count, 3);
+    bench_ab_finish(&all);
+    for (int k = 0; k < 3; k++) {
+        char name[64];
+        snprintf(name, sizeof name, "one (%s, %s)", of[k][0], of[k][1]);
+        assert_string_equal(all.scenes[k].scene, name);
+        for (int b = 0; b < BENCH_BUILDS; b++) {
+            assert_int_equal(all.scenes[k].side[b].count, 1);
+            assert_float_equal(all.scenes[k].side[b].value[0][0], 1 + k, 0);
+        }
+    }
+    bench_ab_free(&all);
+    add_as(&all, BENCH_OLD, "", "", 1);
+    add_as(&all, BENCH_NEW, "octree", "double", 1);
+    bench_ab_finish(&all);
+    assert_int_equal(all.count, 1);
+    assert_string_equal(all.scenes[0].scene, "one");
+    bench_ab_free(&all);
+    BenchComparison *list;
+    const BenchCompareParams params = {false, 1, NAN, 1, false, true};
+    add_as(&all, BENCH_NEW, "fastlsm", "single", 1);
+    add_as(&all, BENCH_NEW, "brute", "double", 1);
+    add_as(&all, BENCH_OLD, "brute", "double", 1);
+    add_as(&all, BENCH_OLD, "octree", "single", 1);
+    bench_ab_finish(&all);
+    assert_int_equal(all.count, 2);
+    int count = bench_compare(&all, &params, &list);
+    assert_string_equal(list[count - 1].reason, "other work: engine octree, now fastlsm");
+    assert_int_equal(list[0].verdict, BENCH_TOO_FEW);
+    bench_comparisons_free(list, count);
+    bench_ab_free(&all);
+}
+
 /* An epsilon of 0 is one, and not an epsilon that a file does not state. */
 TEST(epsilon_0_is_stated)
 {
@@ -246,7 +310,7 @@ TEST(epsilon_0_is_stated)
         BenchAbSamples all = {0};
         BenchComparison *list;
         play(&all, "x", 8, 1, 0.02);
-        BenchSide *side = bench_ab_scene(&all, "x")->side;
+        BenchSide *side = scene_of(&all, "x")->side;
         side[BENCH_OLD].row.epsilon = cases[c].old;
         side[BENCH_NEW].row.epsilon = cases[c].new;
         const BenchCompareParams params = {true, 8, 9, 1, false, false};
@@ -309,9 +373,9 @@ static void write_format(BenchRegressionFormat format, bool cycles, const char *
     play(&all, "slow <&\"> \xc3\xa9", 7, 1.3, 0.02);
     play(&all, "bad", 5, 1, 0.02);
     add(&all, BENCH_NEW, 0, "young", 1, 1);
-    bench_ab_scene(&all, "bad")->side[BENCH_NEW].valid = false;
-    strcpy(bench_ab_scene(&all, "bad")->side[BENCH_NEW].reason, "1 < 2");
-    BenchSide *slow = bench_ab_scene(&all, "slow <&\"> \xc3\xa9")->side;
+    scene_of(&all, "bad")->side[BENCH_NEW].valid = false;
+    strcpy(scene_of(&all, "bad")->side[BENCH_NEW].reason, "1 < 2");
+    BenchSide *slow = scene_of(&all, "slow <&\"> \xc3\xa9")->side;
     if (!cycles) slow[BENCH_OLD].instructions = 1000, slow[BENCH_NEW].instructions = 1100;
     const BenchCompareParams params = {true, 7, NAN, 1, cycles, false};
     counted = false;

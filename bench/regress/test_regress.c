@@ -260,6 +260,35 @@ TEST(two_files_side_by_side)
     bench_rows_free(rows, count);
 }
 
+/* A file with two engines' rows of one scene is measured with both, and each is beside its own. */
+TEST(engines_of_one_scene_are_apart)
+{
+    BenchRow rows[2];
+    BenchMachine machine;
+    SmError error;
+    Result result;
+    row_of_tiny(&rows[0], &machine);
+    expect("shapebench tables --engine fastlsm " TINY "-o lattice.h5", 0, "tiny");
+    BenchRow *lattice;
+    int count;
+    assert_int_equal(
+        bench_store_load(path_in("lattice.h5"), &lattice, &count, &(BenchMachine){0}, &error),
+        SM_OK);
+    rows[1] = lattice[0];
+    assert_int_equal(bench_store_rows(path_in("two.h5"), rows, 2, &machine, &error), SM_OK);
+    for (int named = 0; named < 2; named++) {
+        run(named ? "shapebench regress --baseline two.h5 --threshold 9 --rounds 3 " TINY
+                  : "shapebench regress two.h5 two.h5",
+            &result);
+        assert_int_equal(result.code, named ? 0 : 7);
+        assert_non_null(strstr(result.out, "tiny (brute, double)"));
+        assert_non_null(strstr(result.out, "tiny (fastlsm, single)"));
+        assert_null(strstr(result.out, "no such scene"));
+    }
+    bench_row_free(&rows[0]);
+    bench_rows_free(lattice, count);
+}
+
 /* Where there are none, that is a line; a file may hold none. */
 TEST(counters_or_why_not)
 {
