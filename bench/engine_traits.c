@@ -11,6 +11,7 @@
 #include "measure/shell_checker.h"
 #include "measure/tree_row.h"
 #include "play/body_group.h"
+#include "play/mode.h"
 #include "scene/body.h"
 #include "scene/memory.h"
 
@@ -69,6 +70,7 @@ const BenchEngine bench_shell = {.type = {&ref_shell_engine},
                                  .carrier = &bench_drawn_carrier,
                                  .describe = bench_shell_row_describe,
                                  .checker = &bench_shell_checker,
+                                 .modes = &bench_shell_modes,
                                  .fill = bench_shell_row_fill,
                                  .explain = bench_shell_row_explain,
                                  .memory = bench_memory_lattice};
@@ -83,6 +85,7 @@ const BenchEngine bench_meshless = {.type = {&ref_meshless_engine},
                                     .describe = bench_elastic_row_describe,
                                     .frames = &ref_meshless_frames,
                                     .checker = &bench_elastic_checker,
+                                    .modes = &bench_elastic_modes,
                                     .fill = bench_elastic_row_fill,
                                     .explain = bench_elastic_row_explain,
                                     .memory = bench_memory_lattice};

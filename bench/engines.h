@@ -21,6 +21,7 @@ typedef struct BenchCarrier BenchCarrier; /* play/body_group.h */
 typedef struct BenchTwin BenchTwin;       /* check/check.h */
 typedef struct BenchChecker BenchChecker; /* measure/checker.h */
 typedef struct BenchRow BenchRow;         /* measure/row.h */
+typedef struct BenchModes BenchModes;     /* play/mode.h */
 
 enum { BENCH_MOST_ENGINES = 16, BENCH_MOST_PLANNED = 4, BENCH_ENGINES_TEXT = 128 };
 
@@ -54,6 +55,8 @@ typedef struct {
 
     const SmEngineType *frames; /* what bench_measure() takes in its place, of the same name; NULL:
                                  * the engine itself */
+
+    const BenchModes *modes; /* natural ones, to be shown; NULL: it has none */
 
     /* The row's own columns, of an engine at rest, and more of a row for people. NULL: nothing. */
     void (*fill)(const BenchRunner *runner, BenchRow *row);

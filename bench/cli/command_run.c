@@ -5,6 +5,7 @@
 
 #include "../../reference/meshless/surface/surface_nets.h"
 #include "../engines.h"
+#include "../play/mode.h"
 #include "../play/recording.h"
 #include "../scene/override.h"
 #include "../store/draft.h"
@@ -61,9 +62,10 @@ static const BenchSetting settings[] = {
                   "Octree, meshless, shell: wanted simulation nodes (meshless: "
                   "1000, shell: 450)"),
      BENCH_IN(Options, nodes), 1, 1e9, .of = BENCH_OF_SAMPLED | BENCH_OF_ELASTIC | BENCH_OF_SHELL},
-    {BENCH_OPTION("mode", "K", 1,
-                  "Meshless: in place of the motion, one period of the free body's K-th natural "
-                  "mode that deforms it, from 1, in so many frames"),
+    {BENCH_OPTION(
+         "mode", "K", 1,
+         "Meshless, shell: in place of the motion, one period of the free body's K-th natural "
+         "mode that deforms it, from 1, in so many frames"),
      BENCH_IN(Options, mode), 1, 994},
     {.section = 2, .help = "What is written:"},
     {BENCH_OUTPUT_OPTION("FILE.vtkhdf", 2, "Trajectory (default: SCENE.vtkhdf in this folder)"),
@@ -165,10 +167,10 @@ static SmCode check_owners(const Options *options, const BenchEngine *engine, Sm
         return sm_fail(error, SM_USAGE,
                        "--record stores goals of shape matching, and %s has none: leave it out",
                        engine->type[0]->name);
-    if (options->mode && !(engine->own & BENCH_OF_ELASTIC))
+    if (options->mode && !engine->modes)
         return sm_fail(error, SM_USAGE,
-                       "--mode is of a meshless body, and %s has no natural modes: add --engine "
-                       "meshless, or leave it out",
+                       "--mode is of a meshless body or a shell, and %s has no natural modes: add "
+                       "--engine meshless or shell, or leave it out",
                        engine->type[0]->name);
     return SM_OK;
 }
@@ -372,45 +374,6 @@ static SmCode run_frames(BenchPlayback *play, BenchRecording *recording, const O
     return code;
 }
 
-/* Is there a mode of this number that deforms the body? Of one in pieces each piece is free to
- * move: such modes have a frequency of 0, to rounding. */
-static SmCode check_mode(SmEngine *engine, int mode, SmError *error)
-{
-    const RefModes *modes = &ref_meshless_elastic(engine)->modes;
-    int shapes = ref_meshless_shapes(engine);
-    if (mode > shapes)
-        return sm_fail(error, SM_USAGE,
-                       "--mode %d: %d modes were found that deform the body: --modes %d finds more",
-                       mode, shapes, mode + 6);
-    const double *lambda = modes->lambda + modes->count - shapes;
-    if (lambda[mode - 1] > 1e-12 * lambda[shapes - 1]) return SM_OK;
-    return sm_fail(
-        error, SM_USAGE,
-        "--mode %d: it deforms nothing, because the body is in pieces: take a higher one", mode);
-}
-
-/* One period of a natural mode, whose largest displacement is a tenth of the body's longest extent.
- */
-static SmCode show_mode(BenchPlayback *play, BenchRecording *recording, const Options *options,
-                        SmError *error)
-{
-    const BenchBody *body = play->body;
-    const BenchScene *scene = play->scene;
-    SmEngine *engine = play->group[0].runner.engine;
-    double longest = 0, hertz = 0;
-    SmCode code = check_mode(engine, options->mode, error);
-    for (int d = 0; d < 3; d++) longest = fmax(longest, body->high[d] - body->low[d]);
-    for (int f = 0; f <= scene->frames && !code; f++) {
-        double share = scene->frames ? (double)f / scene->frames : 0.25;
-        hertz = ref_meshless_show(engine, options->mode - 1, 0.1 * longest * sin(2 * M_PI * share));
-        play->time = share / hertz;
-        if (recording) code = bench_recording_frame(recording, error);
-    }
-    if (!code)
-        printf("mode %d of %d: %.6g Hz\n", options->mode, ref_meshless_shapes(engine), hertz);
-    return code;
-}
-
 /* What --output says, or the scene's name in this folder, which `room` has room for. */
 static const char *output_path(const Options *options, const BenchScene *scene,
                                char room[BENCH_NAME + 8])
@@ -469,7 +432,7 @@ static SmCode record(const Options *options, BenchPlayback *play, const BenchMac
     if (recorder) warn_of_size(options, recorder, path);
     BenchOutcome outcome = {.finite = true};
     if (options->mode)
-        code = show_mode(play, recorder, options, error);
+        code = bench_mode_record(play, recorder, options->mode, error);
     else
         code = run_frames(play, recorder, options, &outcome, error);
     if (code || !outcome.finite) {

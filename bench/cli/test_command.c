@@ -159,7 +159,7 @@ TEST(files_that_cannot_be_used_are_named)
          "'hand' is not measured: name it with --scene"},
         {"run plain --no-output", 2, "plain: the ending of its name must say what it is"},
         {"run tiny.cfg --strain-limit 0.5", 3, "it is 0 (never) or above 1"},
-        {"run tiny.cfg --mode 1", 2, "--mode is of a meshless body, and brute has no natural"},
+        {"run tiny.cfg --mode 1", 2, "--mode is of a meshless body or a shell, and brute has no"},
         {"run beam-elastic --nodes 60 --modes 9 --mode 4 --no-output", 2,
          "3 modes were found that deform the body: --modes 10 finds more"},
         {"run two.obj --engine meshless --nodes 200 --points 1000 --modes 20 --mode 2 --no-output",

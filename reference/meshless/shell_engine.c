@@ -12,7 +12,7 @@
 #include "motion/grip.h"
 #include "shell/foot.h"
 
-enum { MOST_POINTS = 12, MOST_LOOSE = 4 };
+enum { MOST_POINTS = 12, MOST_LOOSE = 4, RIGID = 6 };
 
 /* The holds that a handle has become. */
 typedef struct {
@@ -34,6 +34,8 @@ struct SmEngine {
     double pressure, pulse, time;
     RefShape shape;  /* what blow() works in */
     double outwards; /* 1 or -1: the way normals look */
+    RefModes modes;  /* of the free shell, if they were asked for, and */
+    RefWarp shown;   /* how it warps then */
 };
 
 #define CONST(array) ((const double(*)[3])(array))
@@ -49,6 +51,8 @@ static void shell_destroy(SmEngine *engine)
     ref_surface_map_free(&engine->body.map);
     sm_handles_free(&engine->handles);
     ref_shape_free(&engine->shape);
+    ref_modes_free(&engine->modes);
+    ref_warp_free(&engine->shown);
     sm_free_all(engine->triangle, engine->body.carried, engine->place, engine->rest, engine->before,
                 engine->held, engine);
 }
@@ -458,6 +462,38 @@ static void shell_count(SmEngine *engine, SmCounts *counts)
 RefShellBody *ref_shell_body(SmEngine *engine)
 {
     return &engine->body;
+}
+
+SmCode ref_shell_find_modes(SmEngine *engine, int shapes, const RefModes **modes, SmError *error)
+{
+    const RefShell *shell = &engine->body.sheet.shell;
+    *modes = &engine->modes;
+    if (engine->modes.count >= RIGID + shapes) return SM_OK;
+    ref_modes_free(&engine->modes);
+    SmCode code = ref_modes_find(&shell->matrices, NULL, RIGID + shapes, &engine->modes, error);
+    if (code == SM_OK && !engine->shown.nodes) code = ref_warp_create(shell, &engine->shown, error);
+    return code;
+}
+
+double ref_shell_show(SmEngine *engine, int mode, double far)
+{
+    const RefModes *modes = &engine->modes;
+    RefShellBody *body = &engine->body;
+    size_t count = (size_t)modes->count, k = (size_t)mode + RIGID;
+    double most = 0, (*u)[3] = sm_alloc((size_t)modes->nodes, sizeof *u);
+    assert(mode >= 0 && k < count && modes->nodes == body->sheet.warp.nodes);
+    for (long n = 0; n < modes->nodes; n++) {
+        for (size_t d = 0; d < 3; d++) u[n][d] = modes->shape[(3 * (size_t)n + d) * count + k];
+        most = fmax(most, sqrt(sm_dot(u[n], u[n])));
+    }
+    for (long n = 0; n < modes->nodes; n++)
+        for (int d = 0; d < 3; d++) u[n][d] *= far / most;
+    ref_warp_pose(&engine->shown, CONST(u));
+    ref_skin_place(&body->skin, CONST(engine->shown.moved), CONST(engine->shown.turned),
+                   body->carried);
+    memcpy(engine->before, body->carried, (size_t)engine->count * sizeof *engine->before);
+    free(u);
+    return sqrt(fmax(modes->lambda[k], 0)) / (2 * M_PI);
 }
 
 const SmEngineType ref_shell_engine = {

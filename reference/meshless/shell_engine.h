@@ -22,6 +22,7 @@
 #include "map/surface_map.h"
 #include "shell/breaking.h"
 #include "shell/torn_surface.h"
+#include "solve/modes.h"
 
 /* Thickness where none is given: this share of the mesh's longest extent. */
 #define REF_SHELL_THIN 0.01
@@ -47,5 +48,15 @@ typedef struct {
 } RefShellBody;
 
 RefShellBody *ref_shell_body(SmEngine *engine);
+
+/* The lowest natural modes of the shell without cracks that nothing holds: at least the first six,
+ * which are rigid, and `shapes` that deform it; kept with the engine, and its own. Errors:
+ * modes.h's. */
+SmCode ref_shell_find_modes(SmEngine *engine, int shapes, const RefModes **modes, SmError *error);
+
+/* Puts the particles where one of these modes, from 0 of those that deform it, has them, as
+ * ref_meshless_show() does of a solid body: held and cracked by nothing, at rest. Returns its
+ * frequency, Hz. The motion stays. O((nodes + particles) covers), and three solves. */
+double ref_shell_show(SmEngine *engine, int mode, double far);
 
 #endif

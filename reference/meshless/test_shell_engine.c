@@ -378,6 +378,54 @@ TEST(one_that_is_blown_up_comes_apart)
     scene_free(&scene, engine);
 }
 
+/* Modes that are shown leave the motion as it is; they rise from what deforms the body, and as
+ * solid bodies' are as large as is asked for, in both ways. */
+TEST(modes_are_shown_beside_the_motion)
+{
+    needs_solver();
+    Scene scene = ring_create();
+    scene.params.gravity[1] = -9.81;
+    SmEngine *engine = engine_of(&scene);
+    static double x[3][VERTICES][3], v[VERTICES][3];
+    const RefModes *modes;
+    double hertz = 0, least = INFINITY;
+    for (int step = 0; step < 3; step++) type->step(engine, NULL);
+    long size = type->get_state(engine, NULL);
+    double *before = sm_alloc((size_t)size, sizeof *before),
+           *after = sm_alloc((size_t)size, sizeof *after);
+    type->get_state(engine, before);
+    assert_int_equal(ref_shell_find_modes(engine, 5, &modes, NULL), SM_OK);
+    assert_int_equal(modes->count, 11);
+    for (int k = 0; k < 5; k++) {
+        double far = 0;
+        for (int n = 0; n < 3; n++) {
+            double now = ref_shell_show(engine, k, 0.02 * (n - 1));
+            assert_true(now >= hertz);
+            hertz = now;
+            type->get(engine, SM_POSITION, x[n]);
+            type->get(engine, SM_VELOCITY, v);
+            assert_true(sm_dot(v[0], v[0]) == 0);
+        }
+        for (int p = 0; p < VERTICES; p++) {
+            double way[3], back[3];
+            sm_subtract(x[2][p], x[1][p], way);
+            sm_subtract(x[0][p], x[1][p], back);
+            far = fmax(far, sqrt(sm_dot(way, way)));
+            for (int d = 0; d < 3; d++) {
+                assert_true(fabs(way[d] + back[d]) < 0.005); /* but for the squares of turns */
+                assert_true(fabs(x[1][p][d] - scene.mesh.position[p][d]) < 1e-9);
+            }
+        }
+        assert_true(far > 0.01 && far < 0.025);
+        least = fmin(least, hertz);
+    }
+    assert_true(modes->lambda[5] < 1e-5 * pow(2 * M_PI * least, 2));
+    type->get_state(engine, after);
+    assert_memory_equal(before, after, (size_t)size * sizeof *before);
+    sm_free_all(before, after);
+    scene_free(&scene, engine);
+}
+
 TEST(what_it_refuses)
 {
     needs_solver();

@@ -1,0 +1,25 @@
+/* mode.h - natural modes that are shown in place of a body's motion, of the engines that have such
+ * (BenchEngine.modes). */
+#ifndef BENCH_MODE_H
+#define BENCH_MODE_H
+
+#include "recording.h"
+
+typedef struct BenchModes {
+    /* Finds the mode of this number, from 1, of those that deform the free body. Errors: SM_USAGE,
+     * there is none; SM_INPUT, it could not be found. */
+    SmCode (*find)(SmEngine *engine, int mode, SmError *error);
+
+    /* Puts the body where the mode has it when, were the motion small, the node that moves most is
+     * `far` mesh units from rest. Returns its frequency, Hz. */
+    double (*show)(SmEngine *engine, int mode, double far);
+} BenchModes;
+
+extern const BenchModes bench_elastic_modes, bench_shell_modes;
+
+/* One period of the mode in the scene's frames, the largest displacement a tenth of the body's
+ * longest extent; or with none, the moment of that. `recording` may be NULL. Says the frequency on
+ * standard output. Errors: those of find() and of recording. */
+SmCode bench_mode_record(BenchPlayback *play, BenchRecording *recording, int mode, SmError *error);
+
+#endif
