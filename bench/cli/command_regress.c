@@ -193,14 +193,15 @@ static void file_tasks(Session *session)
         const BenchRow *row = &session->stored[i];
         const char *scene = options->scenes.count ? NULL : row->scene;
         bool there = false;
-        for (int t = 0; t < session->tasks && !there; t++) {
+        for (int t = 0; t < session->tasks; t++) {
             BenchTask *task = &session->task[t];
             if (options->scenes.count ? !is_scene(task->scene, row->scene)
                                       : strcmp(task->scene, row->scene) != 0)
                 continue;
             scene = task->scene;
-            there = fits(task, row);
-            if (there && options->scenes.count) task_of_row(row, task);
+            if (!fits(task, row)) continue;
+            if (options->scenes.count) task_of_row(row, task);
+            there = true;
         }
         if (!there && scene) task_of_row(row, add_task(session, scene));
     }

@@ -360,7 +360,7 @@ typedef struct {
     int64_t instances;
     int64_t steps;   /* done so far */
     double time;     /* steps * h */
-    int64_t regions; /* different ones of one instance */
+    int64_t regions; /* different ones of one instance; of meshless bodies and shells nodes */
     int64_t links;   /* between neighbours, unbroken, of one instance */
     int64_t broken;
     int64_t contacts;                            /* of the last step, but those with obstacles */

@@ -470,9 +470,9 @@ SmCode ref_shell_find_modes(SmEngine *engine, int shapes, const RefModes **modes
     *modes = &engine->modes;
     if (engine->modes.count >= RIGID + shapes) return SM_OK;
     ref_modes_free(&engine->modes);
-    SmCode code = ref_modes_find(&shell->matrices, NULL, RIGID + shapes, &engine->modes, error);
-    if (code == SM_OK && !engine->shown.nodes) code = ref_warp_create(shell, &engine->shown, error);
-    return code;
+    SmCode code = engine->shown.nodes ? SM_OK : ref_warp_create(shell, &engine->shown, error);
+    if (code != SM_OK) return code;
+    return ref_modes_find(&shell->matrices, NULL, RIGID + shapes, &engine->modes, error);
 }
 
 double ref_shell_show(SmEngine *engine, int mode, double far)

@@ -49,14 +49,14 @@ typedef struct {
 
 RefShellBody *ref_shell_body(SmEngine *engine);
 
-/* The lowest natural modes of the shell without cracks that nothing holds: at least the first six,
- * which are rigid, and `shapes` that deform it; kept with the engine, and its own. Errors:
- * modes.h's. */
+/* The lowest natural modes of a shell that has no cracks yet, when nothing holds it: at least the
+ * first six, which are rigid, and `shapes` that deform it. The engine keeps them. Errors: those of
+ * modes.h and warp.h. */
 SmCode ref_shell_find_modes(SmEngine *engine, int shapes, const RefModes **modes, SmError *error);
 
 /* Puts the particles where one of these modes, from 0 of those that deform it, has them, as
- * ref_meshless_show() does of a solid body: held and cracked by nothing, at rest. Returns its
- * frequency, Hz. The motion stays. O((nodes + particles) covers), and three solves. */
+ * ref_meshless_show() does of a solid body, with velocities of 0. Returns its frequency, Hz. The
+ * motion stays. O((nodes + particles) covers), and three solves. */
 double ref_shell_show(SmEngine *engine, int mode, double far);
 
 #endif

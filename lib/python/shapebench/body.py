@@ -117,7 +117,7 @@ class Counts:
     instances: int
     steps: int  # done so far
     time: float  # steps * h
-    regions: int  # different ones of one instance
+    regions: int  # different ones of one instance; of meshless bodies and shells nodes
     links: int  # between neighbours, unbroken, of one instance
     broken: int
     contacts: int  # of the last step, but those with obstacles
