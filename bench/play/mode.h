@@ -10,8 +10,8 @@ typedef struct BenchModes {
      * there is none; SM_INPUT, it could not be found. */
     SmCode (*find)(SmEngine *engine, int mode, SmError *error);
 
-    /* Puts the body where the mode has it when, were the motion small, the node that moves most is
-     * `far` mesh units from rest. Returns its frequency, Hz. */
+    /* Puts the body where the mode has it when, were the motion small, the node, or of a shell the
+     * particle, that moves most is `far` mesh units from rest. Returns its frequency, Hz. */
     double (*show)(SmEngine *engine, int mode, double far);
 } BenchModes;
 

@@ -475,24 +475,38 @@ SmCode ref_shell_find_modes(SmEngine *engine, int shapes, const RefModes **modes
     return ref_modes_find(&shell->matrices, NULL, RIGID + shapes, &engine->modes, error);
 }
 
-double ref_shell_show(SmEngine *engine, int mode, double far)
+/* Places the particles as the free shell warps them by so much of a mode; returns how far the one
+ * that moves most is from rest. */
+static double show(SmEngine *engine, size_t k, double amount)
 {
     const RefModes *modes = &engine->modes;
     RefShellBody *body = &engine->body;
-    size_t count = (size_t)modes->count, k = (size_t)mode + RIGID;
-    double most = 0, (*u)[3] = sm_alloc((size_t)modes->nodes, sizeof *u);
-    assert(mode >= 0 && k < count && modes->nodes == body->sheet.warp.nodes);
-    for (long n = 0; n < modes->nodes; n++) {
-        for (size_t d = 0; d < 3; d++) u[n][d] = modes->shape[(3 * (size_t)n + d) * count + k];
-        most = fmax(most, sqrt(sm_dot(u[n], u[n])));
-    }
-    for (long n = 0; n < modes->nodes; n++)
-        for (int d = 0; d < 3; d++) u[n][d] *= far / most;
-    ref_warp_pose(&engine->shown, CONST(u));
+    size_t count = (size_t)modes->count, size = 3 * (size_t)modes->nodes;
+    double most = 0, *u = sm_alloc(size, sizeof *u);
+    for (size_t n = 0; n < size; n++) u[n] = amount * modes->shape[n * count + k];
+    ref_warp_pose(&engine->shown, (const double(*)[3])u);
     ref_skin_place(&body->skin, CONST(engine->shown.moved), CONST(engine->shown.turned),
                    body->carried);
-    memcpy(engine->before, body->carried, (size_t)engine->count * sizeof *engine->before);
+    for (long p = 0; p < engine->count; p++)
+        most = fmax(most, sm_square_between(body->carried[engine->place[p]], engine->rest[p]));
     free(u);
+    return sqrt(most);
+}
+
+/* Parameters say little of how far the surface moves: where the map draws it out, theirs are far
+ * larger than what they are of. A little of the mode says it. */
+double ref_shell_show(SmEngine *engine, int mode, double far)
+{
+    const RefModes *modes = &engine->modes;
+    size_t count = (size_t)modes->count, k = (size_t)mode + RIGID;
+    double most = 0;
+    assert(mode >= 0 && k < count && modes->nodes == engine->body.sheet.warp.nodes);
+    for (size_t n = 0; n < 3 * (size_t)modes->nodes; n++)
+        most = fmax(most, fabs(modes->shape[n * count + k]));
+    double little = 1e-3 * fabs(far) / most;
+    double moved = far != 0 ? show(engine, k, little) : 0;
+    show(engine, k, moved > 0 ? far * little / moved : 0);
+    memcpy(engine->before, engine->body.carried, (size_t)engine->count * sizeof *engine->before);
     return sqrt(fmax(modes->lambda[k], 0)) / (2 * M_PI);
 }
 

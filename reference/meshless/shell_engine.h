@@ -54,9 +54,10 @@ RefShellBody *ref_shell_body(SmEngine *engine);
  * modes.h and warp.h. */
 SmCode ref_shell_find_modes(SmEngine *engine, int shapes, const RefModes **modes, SmError *error);
 
-/* Puts the particles where one of these modes, from 0 of those that deform it, has them, as
- * ref_meshless_show() does of a solid body, with velocities of 0. Returns its frequency, Hz. The
- * motion stays. O((nodes + particles) covers), and three solves. */
+/* Puts the particles where one of these modes, from 0 of those that deform it, has them at such an
+ * amplitude that the particle that moves most, were the motion small, is `far` mesh units from
+ * rest; below 0: the other way. Velocities are 0. Returns its frequency, Hz. The motion stays.
+ * O((nodes + particles) covers), and six solves. */
 double ref_shell_show(SmEngine *engine, int mode, double far);
 
 #endif
