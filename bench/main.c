@@ -81,8 +81,9 @@ static void no_view(void)
     SmError error;
     bool there = !bench_script_find("page.html", found, &error) && realpath(found, page);
     fprintf(stderr,
-            "shapebench: 'view' is of scripts/run in the sources, which makes the page%s%s%s\n",
-            there ? "; one that is made is " : "", there ? page : "",
+            "shapebench: only scripts/run in the source folder has 'view', which makes the "
+            "page%s%s%s\n",
+            there ? "; a page that is ready is " : "", there ? page : "",
             there ? ": open it in a browser and drop your mesh on it" : "");
 }
 

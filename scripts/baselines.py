@@ -34,7 +34,6 @@ ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), ".."))
 sys.path.insert(0, os.path.join(ROOT, "lib", "python"))
 sys.path.insert(1, os.path.join(ROOT, "scripts", "report"))
 import draft
-import stored
 os.environ.setdefault("SHAPEBENCH_LIBRARY", os.path.join(ROOT, "build", "libshapebench.so"))
 os.environ["OMP_NUM_THREADS"] = "1"
 
@@ -263,6 +262,7 @@ def attributes(node, values):
 def store(rows, plan, machine, output, overwrite):
     """The rows for tables and reports, whole or not at all; raises draft.Refused and OSError."""
     import h5py
+    import stored
     room = io.BytesIO()
     text = h5py.string_dtype("utf-8", 64)
     with h5py.File(room, "w") as h5:
@@ -293,6 +293,8 @@ def main(arguments):
     try:
         import shapebench as sb
         sb.engines()
+        if options.output:
+            import h5py  # noqa: F401, before what takes minutes
         machine = environment() if options.output else {}
     except (ImportError, OSError, subprocess.CalledProcessError) as reason:
         return missing(f"{reason}; cmake --build build makes the library and the program")

@@ -58,7 +58,7 @@ def check(held):
         "cells": (held["cells/high"] - held["cells/low"] > 1e-9 * side).all()
                  and inside(held["cells/low"], rectangle, 0.001) and inside(held["cells/high"], rectangle, 0.001),
         "cells/factor": 0 < factor.min() and factor.max() < 1e200 * factor.min(),
-        "nodes": inside(held["nodes/points"], box, 1) and inside(held["nodes/parameters"], rectangle, 0.001),
+        "nodes": inside(held["nodes/points"], box, 0.02) and inside(held["nodes/parameters"], rectangle, 0.001),
     }
     wrong = [name for name, whole in right.items() if not whole]
     if wrong:

@@ -1,5 +1,6 @@
 """Inputs that take no time, of test_damage.py and test_writers.py."""
 import os
+import subprocess
 
 SCENE = 'mesh = "shape:block"; particles = 64; w = 1; bend = 0.3; frames = 2; steps_per_frame = 2;\n'
 CLAIM = ('claims = ( { kind = "method"; paper = "octree"; name = "mine"; statement = "s"; number = "liver-growth"; '
@@ -10,6 +11,13 @@ BOX = "".join([f"v {0.3 * (i & 1)} {0.1 * (i >> 1 & 1)} {0.1 * (i >> 2)}\n" for 
               + [f"f {face}\n" for face in FACES])
 TEXTS = {"a.cfg": SCENE, "mine.cfg": CLAIM, "beam.cfg": BEAM, "box.obj": BOX}
 QUICK = ["--repeats", "2", "--block", "0.1"]
+MAP = ["info", "shape:block", "--map", "--nodes", "60"]
+
+
+def has_maps(program):
+    """Whether the program was built with the solver that maps of shells need."""
+    done = subprocess.run([program, *MAP, "--quiet"], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False)
+    return "libsuitesparse" not in done.stderr
 
 
 def write_inputs(folder):

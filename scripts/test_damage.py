@@ -19,7 +19,7 @@ import sys
 import tempfile
 import zlib
 
-from small_inputs import QUICK, write_inputs
+from small_inputs import MAP, QUICK, has_maps, write_inputs
 
 try:
     import h5py
@@ -39,7 +39,7 @@ MADE = {  # file: what makes it
     "beam.h5": ["calibrate", "--scene", "beam.cfg", "--w", "1:2", "--epsilon", "0", "--across", "1", "--aspect", "none",
                 "--step", "none"],
     "slice.h5": ["info", "shape:block", "--slice", "z=0.5"],
-    "map.h5": ["info", "shape:block", "--map", "--nodes", "60"],
+    "map.h5": MAP,
     "particles.vtkhdf": ["run", "a.cfg", "--record", "particles"],
     "nodes.vtkhdf": ["run", "a.cfg", "--engine", "octree", "--record", "nodes"],
 }
@@ -197,6 +197,8 @@ def make_files(program, folder):
     write_inputs(folder)
     for name, source in COPIED.items():
         shutil.copy(os.path.join(os.path.dirname(SCRIPTS), source), os.path.join(folder, name))
+    if not has_maps(program):
+        del MADE["map.h5"], READ["map.h5"]
     for name, words in MADE.items():
         done = subprocess.run([program, *words, "--quiet", "-o", name], cwd=folder, capture_output=True, text=True)
         if not os.path.exists(os.path.join(folder, name)):

@@ -18,7 +18,7 @@ import sys
 import tempfile
 import time
 
-from small_inputs import QUICK, write_inputs
+from small_inputs import MAP, QUICK, has_maps, write_inputs
 
 if not all(importlib.util.find_spec(name) for name in ("h5py", "matplotlib", "jinja2")):
     print("skipped: h5py, matplotlib or jinja2 is missing; scripts/setup installs them")
@@ -36,7 +36,7 @@ COMMANDS = {  # what is written: the command, without its output; it comes last
     "beam.h5": [PROGRAM, "calibrate", "--scene", "beam.cfg", "--w", "1:2", "--epsilon", "0", "--across", "1",
                 "--aspect", "none", "--step", "none", "-o"],
     "slice.h5": [PROGRAM, "info", "shape:block", "--slice", "z=0.5", "-o"],
-    "map.h5": [PROGRAM, "info", "shape:block", "--map", "--nodes", "60", "-o"],
+    "map.h5": [PROGRAM, *MAP, "-o"],
     "motion.vtkhdf": [PROGRAM, "run", "a.cfg", "--frames", "3000", "--record", "particles", "-o"],
     "mesh.obj": [PROGRAM, "scenes", "penguin", "--write-mesh"],
     "merged.h5": [PROGRAM, "merge", "OUTPUT", "kept-sweep.h5"],
@@ -123,6 +123,8 @@ class Trial:
     def prepare(self):
         """The inputs, and how long every command takes."""
         write_inputs(self.folder)
+        if not has_maps(self.program):
+            del COMMANDS["map.h5"]
         os.mkdir(self.at("tmp"))
         os.mkdir(self.at("matplotlib"))
         for name in COMMANDS:

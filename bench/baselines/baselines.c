@@ -60,6 +60,8 @@ static void check_method(BenchH5 *h5, BenchBaseline *method, long index)
             bench_h5_fail(h5, "method %ld has a time of %g", index, times[t]);
     if (!isfinite(method->sag_percent))
         bench_h5_fail(h5, "method %ld sags by %g%%", index, method->sag_percent);
+    if (isinf(method->deviation_percent))
+        bench_h5_fail(h5, "method %ld deviates by %g%%", index, method->deviation_percent);
 }
 
 static void read_methods(BenchH5 *h5, BenchBaselines *baselines)

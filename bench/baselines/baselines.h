@@ -39,7 +39,8 @@ typedef struct {
 
 /* Reads a file. On SM_OK the caller frees it; else there is nothing to free. SM_INPUT, with the
  * file and what is wrong: no such file, not HDF5, cut off, damaged, another kind, another schema,
- * something missing, no method, a time that is no positive number. */
+ * something missing, no method, a time that is no positive number, a sag that is
+ * none. */
 SmCode bench_baselines_load(const char *path, BenchBaselines *baselines, SmError *error);
 void bench_baselines_free(BenchBaselines *baselines);
 

@@ -68,8 +68,8 @@
  *   range `n`, octants that it is thick.
  * - cells: of the quadtree that `scene`'s shell has with so many nodes, range `n`, against its
  *   cells, `field`: "spread", percent of their mean by which lengths of cells' edges on the surface
- *   deviate from it (map.h); "least-covers", the fewest nodes whose covers, three edges wide, have
- * a place inside, of five by five places in every cell, its sides' too.
+ *   deviate from it (map.h); "least-covers", the fewest nodes whose
+ *   covers, three edges wide, have a place inside, of five by five places in every cell.
  * - seam: one point: the largest difference of entries of `scene`'s stiffness matrix, in 1e-6 of
  *   the roots of their diagonals, from those of the same nodes where the map is cut open half a
  *   side farther along its first axis; covers are 0.2% wider than the shell's.

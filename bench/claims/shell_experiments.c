@@ -288,8 +288,8 @@ static void add_burst(const BenchExperiment *of, const Burst *burst)
                          burst->steps[0]);
         return;
     }
-    of->curve->busy = burst->busy;
-    if (burst->busy)
+    of->curve->busy = burst->busy && of->curve->valid;
+    if (of->curve->busy)
         bench_curve_fail(of->curve, "others took its processors (load average %.1f)",
                          bench_load_average());
     BenchInterval whole = bench_curve_interval(burst->ms[0], burst->steps[0], 0.5, 2);

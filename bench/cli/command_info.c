@@ -76,7 +76,7 @@ static void check(const struct argp_state *state, void *record)
     if (!options->map && !options->slice != !options->output)
         bench_usage(state, "--slice and --output go together, or --map and --output");
     if (options->overwrite && !options->output)
-        bench_usage(state, "--overwrite: of which --output?");
+        bench_usage(state, "--overwrite needs --output: it replaces that file");
     const char *only = options->map ? "--map" : options->slice ? "--slice" : NULL;
     if (only && (options->common.words > 1 || options->format || options->particles))
         bench_usage(state, "%s: of one mesh, without --format and --particles", only);
@@ -205,7 +205,7 @@ static void print_map(const char *name, const BenchMap *all)
     printf("  points        %ld\n", map->vertices);
     printf("  surface       %s: genus %d, %d rims; %ld triangles\n", ref_map_kind_name(map->kind),
            surface->genus, surface->rims, map->triangles);
-    printf("  mended        %ld triangles dropped, %d rims closed, %d handles cut\n", map->dropped,
+    printf("  repaired      %ld triangles dropped, %d rims closed, %d handles cut\n", map->dropped,
            map->closed, map->handles);
     printf("  parameters    %.6g x %.6g, in %.3g s\n", chart->high[0] - chart->low[0],
            chart->high[1] - chart->low[1], map->seconds);

@@ -77,7 +77,7 @@ TEST(mistyped_words_get_a_suggestion)
         {"report --threads 2 a.h5", 2, "unrecognized option '--threads'"},
         {"penguin", 2, "unknown command 'penguin'; did you mean 'run penguin'?"},
         {"tiny.cfg", 2, "did you mean 'run tiny.cfg'?"},
-        {"view two.obj", 2, "'view' is of scripts/run in the sources, which makes the page"},
+        {"view two.obj", 2, "only scripts/run in the source folder has 'view'"},
     };
     make_mistakes(cases, sizeof cases / sizeof cases[0]);
 }

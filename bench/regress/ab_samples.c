@@ -71,8 +71,9 @@ static bool alone(const BenchAbScene *samples, BenchBuild build)
 static void say_which(BenchAbScene *samples)
 {
     size_t length = strlen(samples->scene);
-    snprintf(samples->scene + length, sizeof samples->scene - length, " (%s, %s)", samples->engine,
-             samples->precision);
+    const char *between = *samples->precision ? ", " : ""; /* old files do not say it */
+    snprintf(samples->scene + length, sizeof samples->scene - length, " (%s%s%s)", samples->engine,
+             between, samples->precision);
 }
 
 void bench_ab_finish(BenchAbSamples *all)

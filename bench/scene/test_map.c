@@ -192,7 +192,7 @@ TEST(wrong_options_are_said)
         {"info shape:bar --map --particles 90", 2, "--map: of one mesh, without --format"},
         {"info shape:bar --nodes 90", 2, "--nodes goes with --map"},
         {"info shape:bar --map --nodes 7", 2, "--nodes: '7'"},
-        {"info shape:bar --map --overwrite", 2, "--overwrite: of which --output?"},
+        {"info shape:bar --map --overwrite", 2, "--overwrite needs --output"},
     };
     make_mistakes(mistakes, sizeof mistakes / sizeof *mistakes);
 }

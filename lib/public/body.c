@@ -268,7 +268,7 @@ static int check_pressure(const RefMeshlessOptions *shell, double h, double cell
     SmBox box = sm_box_around(shell->mesh->vertex_count, shell->mesh->position);
     double thin = shell->thickness > 0 ? shell->thickness : REF_SHELL_THIN * sm_box_longest(&box);
     double most = SB_FAR * cell / (h * h) * thin * shell->material.density;
-    if (fabs(shell->pressure) <= most) return SB_OK;
+    if (shell->pressure == 0 || fabs(shell->pressure) <= most) return SB_OK;
     return sm_refuse(error, SB_USAGE,
                      "'pressure' is %g: above %g, it moves the shell by 1e9 cells in a step",
                      shell->pressure, most);

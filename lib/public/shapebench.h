@@ -302,8 +302,8 @@ typedef struct {
                        * the paper); 0: quadratic ones, six edges wide */
     double strength;  /* it cracks where its largest principal stress is above this; 0: never */
     double branching; /* times the strength from which on a crack goes on in two; 0: never */
-    double pressure;  /* inside a closed one, along its normals at rest, */
-    double pulse;     /* for so many seconds from the beginning */
+    double pressure;  /* inside a closed one; it acts along the normals at rest */
+    double pulse;     /* seconds from the beginning in which the pressure acts */
 } sb_shell_params;
 
 typedef struct {
@@ -326,9 +326,9 @@ typedef struct {
     double collide_friction;             /* share of tangential velocity lost on contact, 0 to 1 */
     int64_t instances;  /* bodies of the same voxels, which share memory; 0 means 1 */
     const double *pose; /* [instances][12], from rest to where each starts; NULL: at rest. Of
-                         * meshless bodies and shells a translation */
-    const double *mass; /* [particles of the voxels] kg; NULL: 1 each; of the octree, 1 a cell; what
-                         * meshless bodies and shells weigh their density says */
+                         * meshless bodies and shells a translation; others: SB_INPUT */
+    const double *mass; /* [particles of the voxels] kg; NULL: 1 each; of the octree, 1 a cell.
+                         * Meshless bodies and shells have a density instead; not NULL: SB_INPUT */
     const sb_octree_params *octree;     /* SB_OCTREE; NULL: the defaults */
     const sb_meshless_params *meshless; /* SB_MESHLESS; NULL: the defaults */
     const sb_shell_params *shell;       /* SB_THIN_SHELL; NULL: the defaults */

@@ -105,8 +105,8 @@ class ShellParams:
     covers: Optional[float] = None  # width of nodes' linear functions, edges of their cells, to 12; 0: quadratic
     strength: Optional[float] = None  # it cracks where its largest principal stress is above this; 0: never
     branching: Optional[float] = None  # times the strength from which on a crack goes on in two; 0: never
-    pressure: Optional[float] = None  # inside a closed one, along its normals at rest,
-    pulse: Optional[float] = None  # for so many seconds from the beginning
+    pressure: Optional[float] = None  # inside a closed one; it acts along the normals at rest
+    pulse: Optional[float] = None  # seconds from the beginning in which the pressure acts
 
 
 @dataclass(frozen=True)

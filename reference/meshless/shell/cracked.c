@@ -1,5 +1,6 @@
 #include "cracked.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -452,6 +453,7 @@ static void widen_fields(long before, long nodes, const RefCrackedFields *fields
 void ref_cracked_update(RefCracked *cracked, const RefCrackedFields *fields)
 {
     RefShell *shell = cracked->shell;
+    assert(!fields || fields->count >= 2);
     RefFieldsBefore before = ref_fields_before(cracked, fields);
     cracked->counts = (RefCrackedCounts){.split = split_cells(cracked)};
     unsigned char *fresh = move_nodes(cracked);

@@ -77,7 +77,7 @@ typedef struct {
  * is written to `residual`, so that displacements + K^-1 residual and velocities + M^-1 residual
  * are its projections in the norms of both energies, which are no longer than the field was
  * (field_transfer.h): energies do not grow and momentum stays, but for samples that see no node
- * any more, whose mass is gone, and by what areas of a cell's samples and of its parts' differ.
+ * any more, whose mass is gone. To a thousandth: samples of a split cell have a little other areas.
  * `fields` may be NULL. */
 void ref_cracked_update(RefCracked *cracked, const RefCrackedFields *fields);
 

@@ -123,7 +123,7 @@ static void add_seen(const Seen *seen, double area, Sums *sums)
 /* Sums of squares about the mean. */
 static double variance(const Sums *sums)
 {
-    return sums->squares - sm_dot(sums->momentum, sums->momentum) / sums->area;
+    return fmax(sums->squares - sm_dot(sums->momentum, sums->momentum) / sums->area, 0);
 }
 
 /* What samples of a cell's parts are to have, so that they have the cell's momentum, and no more
@@ -133,7 +133,7 @@ static Seen adjusted(const Seen *seen, const Balance *balance)
     const Sums *was = &balance->was, *is = &balance->is;
     Seen changed = *seen;
     double strained = is->energy > was->energy ? sqrt(was->energy / is->energy) : 1;
-    double varied = variance(was) < variance(is) ? sqrt(fmax(variance(was), 0) / variance(is)) : 1;
+    double varied = variance(was) < variance(is) ? sqrt(variance(was) / variance(is)) : 1;
     for (int i = 0; i < 6; i++) changed.root[i] *= strained;
     for (int d = 0; d < 3; d++)
         changed.velocity[d] =

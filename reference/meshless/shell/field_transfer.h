@@ -3,10 +3,10 @@
  *
  * They are projected onto the new functions: displacements so that strains are off by least, in the
  * norm of the elastic energy, velocities so that they themselves are, in that of the kinetic
- * energy. A projection is never longer than what is projected, so that neither energy grows, and
- * constants being among the functions, momentum stays. Both norms are sums over samples. Where a
- * cell was split its samples are others: what they have of the old fields is made to have the sums
- * that the cell had. */
+ * energy. A projection is never longer than what is projected, so that neither energy grows (to a
+ * thousandth: test_cracked.c), and constants being among the functions, momentum stays. Both norms
+ * are sums over samples. Where a cell was split its samples are others: what they have of the old
+ * fields is made to have the sums that the cell had. */
 #ifndef REF_FIELD_TRANSFER_H
 #define REF_FIELD_TRANSFER_H
 

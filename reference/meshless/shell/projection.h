@@ -5,12 +5,12 @@
 
 #include "warp.h"
 
-/* Adds K^-1 of a residual to displacements and M^-1 of one to velocities, [3 nodes] each. K leaves
- * free what moves as a rigid body, and parts of M may depend on one another to rounding: K is K and
- * a small share of `mass_share`, as steps have it, times M, M is M and a smaller share of the
- * warp's Laplacian. That one's slopes are of the velocities, not of their change, and constants
- * have none: they get no longer, and momentum stays. Two factorisations. Errors, and nothing
- * changed: solver.h's. */
+/* Adds to displacements and velocities, [3 nodes] each, what is left of them by their residuals:
+ *     u += (K + e m M)^-1 residual        v += (M + s L)^-1 (residual - s L v)
+ * m is `mass_share`, as steps have it, and e is small: K leaves free what moves as a rigid body. L
+ * is the warp's Laplacian, and s smaller: parts of M may depend on one another to rounding. So |v|
+ * in the norm of M gets no longer than the velocities that are projected, and momentum stays, as
+ * constants have no slopes. Two factorisations. Errors: solver.h's; u is as it was then. */
 SmCode ref_project_fields(const RefMatrices *matrices, const RefWarp *warp, double mass_share,
                           double *const residual[2], double *u, double *v, SmError *error);
 

@@ -83,7 +83,7 @@ void ref_sheet_pose(RefSheet *sheet);
 /* After the shell has changed (cracked.h): its new nodes have these displacements, velocities and
  * places, [3 nodes] each, of which the first two are projected by their residuals. Nothing is held
  * then. Four factorisations. ref_sheet_anchor() is to follow. Errors, and nothing of the sheet
- * changed: solver.h's. */
+ * changed, but maybe `v`: solver.h's. */
 SmCode ref_sheet_renew(RefSheet *sheet, double *u, double *v, const double *moved,
                        double *const residual[2], SmError *error);
 
