@@ -56,7 +56,7 @@ for program in "$root/usr/bin" "$build"; do
 done >"$folder/hashes"
 [ "$(sort -u "$folder/hashes" | wc -l) $(wc -l <"$folder/hashes")" = "1 2" ] || fail "it runs differently"
 
-page=$({ "$root/usr/bin/shapebench" view 2>&1 || true; } | sed -n 's/.*one that is made is \(.*\): open it.*/\1/p')
+page=$({ "$root/usr/bin/shapebench" view 2>&1 || true; } | sed -n 's/.*a page that is ready is \(.*\): open it.*/\1/p')
 [ -s "$page" ] || fail "view does not say where the page is: $page"
 
 sed -n '/^#include <shapebench.h>/,/^```/{/^```/!p}' "$here/../lib/README.md" >"$folder/program.c"
