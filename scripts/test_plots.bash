@@ -25,6 +25,19 @@ refused() {
     [ "$(wc -l <err)" -eq 1 ] || wrong "more than a line: $(cat err)"
 }
 
+# refuses_others FILE: one that is absent, a text, one of another kind; as output a folder, and one in no folder
+refuses_others() {
+    refused 3 absent.h5
+    echo text >text.h5
+    refused 3 text.h5
+    /usr/bin/python3 -c 'import h5py; h5py.File("other.h5", "w").attrs["kind"] = "else"'
+    refused 3 other.h5
+    mkdir folder
+    refused 4 "$1" -o folder
+    [ ! -e folder.png ] || wrong "it wrote beside the folder"
+    refused 4 "$1" -o "no/such/$1.png"
+}
+
 # interrupted FILE: Ctrl-C while matplotlib is imported, then while it writes; one line, no draft left
 interrupted() {
     local when

@@ -138,13 +138,18 @@ static void print_volume(const SmMeshInfo *m)
                              : "the triangles do not agree which side is outside");
 }
 
-static void print_text(const char *name, const Facts *facts)
+static void print_name(const char *name)
 {
-    const SmMeshInfo *m = &facts->mesh;
     char shown[BENCH_PATH];
     snprintf(shown, sizeof shown, "%s", name);
     sm_printable(shown);
     printf("%s\n", shown);
+}
+
+static void print_text(const char *name, const Facts *facts)
+{
+    const SmMeshInfo *m = &facts->mesh;
+    print_name(name);
     printf("  triangles     %ld\n", m->triangles);
     printf("  vertices      %ld\n", m->vertices);
     printf("  components    %ld\n", m->components);
@@ -198,10 +203,7 @@ static void print_map(const char *name, const BenchMap *all)
     const RefSurfaceMap *map = &all->map;
     const RefTriangulation *surface = ref_surface_map_triangles(map);
     const RefChart *chart = &map->chart;
-    char shown[BENCH_PATH];
-    snprintf(shown, sizeof shown, "%s", name);
-    sm_printable(shown);
-    printf("%s\n", shown);
+    print_name(name);
     printf("  points        %ld\n", map->vertices);
     printf("  surface       %s: genus %d, %d rims; %ld triangles\n", ref_map_kind_name(map->kind),
            surface->genus, surface->rims, map->triangles);

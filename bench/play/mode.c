@@ -6,11 +6,11 @@
 #include "../../reference/meshless/shell_engine.h"
 #include "../engines.h"
 
-enum { RIGID = 6 };
-
 /* Of a body in pieces each piece is free to move: such modes have a frequency of 0, to rounding. */
-static SmCode deforms_nothing(int mode, SmError *error)
+static SmCode check_deforms(const RefModes *modes, int mode, SmError *error)
 {
+    const double *lambda = modes->lambda;
+    if (lambda[REF_RIGID_MODES + mode - 1] > 1e-12 * lambda[modes->count - 1]) return SM_OK;
     return sm_fail(
         error, SM_USAGE,
         "--mode %d: it deforms nothing, because the body is in pieces: take a higher one", mode);
@@ -24,8 +24,7 @@ static SmCode find_elastic(SmEngine *engine, int mode, SmError *error)
         return sm_fail(error, SM_USAGE,
                        "--mode %d: %d modes were found that deform the body: --modes %d finds more",
                        mode, shapes, mode + 6);
-    const double *lambda = modes->lambda + modes->count - shapes;
-    return lambda[mode - 1] > 1e-12 * lambda[shapes - 1] ? SM_OK : deforms_nothing(mode, error);
+    return check_deforms(modes, mode, error);
 }
 
 static double show_elastic(SmEngine *engine, int mode, double far)
@@ -41,8 +40,7 @@ static SmCode find_shell(SmEngine *engine, int mode, SmError *error)
     SmError why;
     SmCode code = ref_shell_find_modes(engine, mode, &modes, &why);
     if (code) return sm_fail(error, code, "--mode %d, above six rigid ones: %s", mode, why.text);
-    const double *last = modes->lambda + modes->count - 1;
-    return last[mode + RIGID - modes->count] > 1e-12 * *last ? SM_OK : deforms_nothing(mode, error);
+    return check_deforms(modes, mode, error);
 }
 
 static double show_shell(SmEngine *engine, int mode, double far)

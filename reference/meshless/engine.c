@@ -275,18 +275,16 @@ long ref_meshless_points(const SmEngine *engine, double (*x)[3])
     return engine->all - engine->count;
 }
 
-enum { RIGID = 6 };
-
 int ref_meshless_shapes(const SmEngine *engine)
 {
     int modes = engine->elastic.modes.count;
-    return modes > RIGID ? modes - RIGID : 0;
+    return modes > REF_RIGID_MODES ? modes - REF_RIGID_MODES : 0;
 }
 
 double ref_meshless_show(SmEngine *engine, int mode, double far)
 {
     const RefModes *modes = &engine->elastic.modes;
-    size_t count = (size_t)modes->count, k = (size_t)mode + RIGID;
+    size_t count = (size_t)modes->count, k = (size_t)mode + REF_RIGID_MODES;
     double most = 0;
     assert(!engine->points && mode >= 0 && mode < ref_meshless_shapes(engine));
     for (long n = 0; n < modes->nodes; n++) {

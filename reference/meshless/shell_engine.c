@@ -12,7 +12,7 @@
 #include "motion/grip.h"
 #include "shell/foot.h"
 
-enum { MOST_POINTS = 12, MOST_LOOSE = 4, RIGID = 6 };
+enum { MOST_POINTS = 12, MOST_LOOSE = 4 };
 
 /* The holds that a handle has become. */
 typedef struct {
@@ -468,11 +468,11 @@ SmCode ref_shell_find_modes(SmEngine *engine, int shapes, const RefModes **modes
 {
     const RefShell *shell = &engine->body.sheet.shell;
     *modes = &engine->modes;
-    if (engine->modes.count >= RIGID + shapes) return SM_OK;
+    if (engine->modes.count >= REF_RIGID_MODES + shapes) return SM_OK;
     ref_modes_free(&engine->modes);
     SmCode code = engine->shown.nodes ? SM_OK : ref_warp_create(shell, &engine->shown, error);
     if (code != SM_OK) return code;
-    return ref_modes_find(&shell->matrices, NULL, RIGID + shapes, &engine->modes, error);
+    return ref_modes_find(&shell->matrices, NULL, REF_RIGID_MODES + shapes, &engine->modes, error);
 }
 
 /* Places the particles as the free shell warps them by so much of a mode; returns how far the one
@@ -498,7 +498,7 @@ static double show(SmEngine *engine, size_t k, double amount)
 double ref_shell_show(SmEngine *engine, int mode, double far)
 {
     const RefModes *modes = &engine->modes;
-    size_t count = (size_t)modes->count, k = (size_t)mode + RIGID;
+    size_t count = (size_t)modes->count, k = (size_t)mode + REF_RIGID_MODES;
     double most = 0;
     assert(mode >= 0 && k < count && modes->nodes == engine->body.sheet.warp.nodes);
     for (size_t n = 0; n < 3 * (size_t)modes->nodes; n++)

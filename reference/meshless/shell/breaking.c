@@ -5,7 +5,6 @@
 void ref_breaking_free(RefBreaking *breaking)
 {
     if (breaking->sheet) ref_cracked_free(&breaking->cracked);
-    sm_free_all(breaking->residual[0], breaking->residual[1]);
     *breaking = (RefBreaking){.sheet = NULL};
 }
 
@@ -37,16 +36,17 @@ SmCode ref_breaking_update(RefBreaking *breaking, SmError *error)
     double *field[3] = {sm_copy(sheet->steps.u, size, sizeof(double)),
                         sm_copy(sheet->steps.v, size, sizeof(double)),
                         sm_copy(sheet->warp.moved, size, sizeof(double))};
-    const RefCrackedFields fields = {3, field, breaking->residual};
+    double *residual[2] = {NULL, NULL};
+    const RefCrackedFields fields = {3, field, residual};
     RefCrackedSaved saved = ref_cracked_save(&breaking->cracked);
     ref_cracked_update(&breaking->cracked, &fields);
-    SmCode code = ref_sheet_renew(sheet, field[0], field[1], field[2], breaking->residual, error);
+    SmCode code = ref_sheet_renew(sheet, field[0], field[1], field[2], residual, error);
     if (code == SM_OK) {
         ref_sheet_anchor(sheet);
         ref_cracked_saved_free(&saved);
     } else
         ref_cracked_restore(&breaking->cracked, &saved);
-    sm_free_all(field[0], field[1], field[2]);
+    sm_free_all(field[0], field[1], field[2], residual[0], residual[1]);
     return code;
 }
 

@@ -11,7 +11,6 @@ typedef struct {
     RefSheet *sheet; /* the caller's */
     RefCracked cracked;
     RefFractureOptions options;
-    double *residual[2]; /* of displacements and velocities, at the last update */
 } RefBreaking;
 
 /* Of a sheet whose shell has no cracks. `breaking` must not move in memory. The caller frees it

@@ -1,6 +1,5 @@
 #include "field_place.h"
 
-#include <math.h>
 #include <string.h>
 
 RefFieldPlace ref_field_sample(const RefSamples *samples, long p, const double (*X)[3])
@@ -34,21 +33,13 @@ void ref_field_strains(const RefFieldPlace *place, const RefFrame *frame, double
     }
 }
 
-/* Roots of the membrane's and the bending stiffness. */
-static void stiffness_of(double t, const RefMaterial *material, double weight[2])
-{
-    double nu = material->poisson;
-    weight[0] = sqrt(material->young * t / (1 - nu * nu));
-    weight[1] = weight[0] * t / sqrt(12);
-}
-
 void ref_field_root(const RefFieldPlace *place, const RefFrame *frame, double thickness,
                     const RefMaterial *material, double root[6])
 {
     double strain[6], G[3][3], weight[2];
     ref_field_strains(place, frame, strain);
     ref_thin_factor(frame->inverse, material->poisson, G);
-    stiffness_of(thickness, material, weight);
+    ref_thin_weights(1, thickness, material, weight);
     for (int i = 0; i < 6; i++) {
         double sum = 0;
         for (int j = i % 3; j < 3; j++) sum += G[i % 3][j] * strain[i / 3 * 3 + j];
@@ -62,7 +53,7 @@ void ref_field_pull(const RefFieldPlace *place, const RefFrame *frame, double th
 {
     double stress[6] = {0}, B[6][3], G[3][3], weight[2];
     ref_thin_factor(frame->inverse, material->poisson, G);
-    stiffness_of(thickness, material, weight);
+    ref_thin_weights(1, thickness, material, weight);
     for (int i = 0; i < 6; i++)
         for (int j = i % 3; j < 3; j++)
             stress[i / 3 * 3 + j] += area * weight[i / 3] * G[i % 3][j] * root[i];

@@ -21,6 +21,13 @@ void ref_thin_law(const double g[3], double nu, double H[3][3])
     H[1][2] = H[2][1] = g[1] * g[2];
 }
 
+void ref_thin_weights(double area, double thickness, const RefMaterial *material, double weight[2])
+{
+    double nu = material->poisson, membrane = area * material->young * thickness / (1 - nu * nu);
+    weight[0] = sqrt(membrane);
+    weight[1] = sqrt(membrane / 12) * thickness;
+}
+
 void ref_thin_factor(const double g[3], double nu, double G[3][3])
 {
     double H[3][3];
@@ -87,8 +94,8 @@ static bool write_sample(const double (*X)[3], const RefSamples *samples, long p
     const double(*part)[6] = (const double(*)[6])(samples->part + from);
     RefFrame frame = ref_middle_at(X, count, node, part);
     double nu = material->poisson, G[3][3], B[6][3], area = samples->area[p];
-    double membrane = area * material->young * t / (1 - nu * nu);
-    double weight[2] = {sqrt(membrane), sqrt(membrane / 12) * t}, root = sqrt(area * t);
+    double weight[2], root = sqrt(area * t);
+    ref_thin_weights(area, t, material, weight);
     bool stiff = ref_thin_is_stiff(&frame, area / samples->weight[p], samples->trace[p]);
     for (int e = 0; e < count; e++)
         work->shape[sample * columns_for(nodes) + work->number[node[e]]] += root * part[e][0];

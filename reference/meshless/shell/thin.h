@@ -53,6 +53,9 @@ void ref_thin_strains(const RefFrame *frame, const double part[6], double B[6][3
 /* What strains are multiplied by under the integral, H as rows of (11, 22, 12). */
 void ref_thin_law(const double inverse[3], double poisson, double H[3][3]);
 
+/* Roots of the membrane's and the bending stiffness of an area. */
+void ref_thin_weights(double area, double thickness, const RefMaterial *material, double weight[2]);
+
 /* G of H = G^T G, upper triangular: the squares of G times strains are the energy. */
 void ref_thin_factor(const double inverse[3], double poisson, double G[3][3]);
 

@@ -4,6 +4,8 @@
 
 #include "solver.h"
 
+enum { REF_RIGID_MODES = 6 }; /* of a free body, the lowest ones */
+
 typedef struct {
     long nodes;
     int count;
