@@ -30,8 +30,8 @@ static double size_of(const RefShellBody *body)
 
 /* ---- the body */
 
-/* Functions and slopes sum up to 1 and 0 at points spread over the surface, and there are enough.
- */
+/* Functions and slopes sum up to 1 and 0 at points spread over the surface, and there are enough
+ * but where cracks leave a point none. */
 static void check_shapes(const RefShellBody *body, BenchElasticFound *found)
 {
     const RefShell *shell = &body->sheet.shell;
@@ -43,6 +43,7 @@ static void check_shapes(const RefShellBody *body, BenchElasticFound *found)
         ref_quadtree_cell(&shell->tree, shell->tree.cell + ref_quadtree_at(&shell->tree, theta),
                           middle, edge);
         bool covered = ref_shell_shape(shell, theta, &shape);
+        if (!covered && body->breaking) continue;
         for (int n = 0; n < shape.count; n++) {
             sum[0] += shape.value[n];
             for (int d = 0; d < 2; d++) sum[1 + d] += shape.gradient[n][d] * edge[d];
@@ -91,7 +92,8 @@ static void check_mass(const RefShellBody *body, BenchElasticFound *found)
                        fabs(mass / (wanted * area_of(&body->sheet.shell)) - 1));
 }
 
-/* Forces of six rigid motions by those of their parameters' absolute values. */
+/* Forces of six rigid motions by those of their parameters' absolute values; not on nodes that
+ * nothing sees, which are tied. */
 static void check_rigid(const RefShellBody *body, BenchElasticFound *found)
 {
     const RefSparse *K = &body->sheet.shell.matrices.stiffness;
@@ -111,9 +113,10 @@ static void check_rigid(const RefShellBody *body, BenchElasticFound *found)
         ref_sparse_apply(K, 1, u, f);
         for (size_t n = 0; n < size; n++) u[n] = fabs(u[n]);
         ref_sparse_apply(&absolute, 1, u, scale);
+        double least = 1e-6 * largest((long)size, scale);
         for (size_t n = 0; n < size; n++)
-            bench_elastic_note(found, BENCH_ELASTIC_RIGID,
-                               fabs(f[n]) / fmax(scale[n], 1e-6 * largest((long)size, scale)));
+            if (!body->breaking || ref_cracked_seen(&body->breaking->cracked, (long)n / 3))
+                bench_elastic_note(found, BENCH_ELASTIC_RIGID, fabs(f[n]) / fmax(scale[n], least));
     }
     sm_free_all(u, f, scale, absolute.value);
 }
@@ -251,6 +254,16 @@ static void check_growth(const RefSheet *sheet, BenchElasticFound *found)
     ref_steps_free(&steps);
 }
 
+void bench_shell_check_broken(const RefShellBody *body, BenchElasticFound *found)
+{
+    check_shapes(body, found);
+    check_rigid(body, found);
+    check_growth(&body->sheet, found);
+    for (long s = 0; s < body->skin.count; s++)
+        for (int d = 0; d < 3; d++)
+            bench_elastic_note(found, BENCH_ELASTIC_SKIN, isfinite(body->carried[s][d]) ? 0 : NAN);
+}
+
 void bench_shell_check_state(BenchRunner *runner, BenchElasticFound *found)
 {
     RefShellBody *body = ref_shell_body(runner->engine);
@@ -264,9 +277,8 @@ void bench_shell_check_state(BenchRunner *runner, BenchElasticFound *found)
     runner->type->get_state(runner->engine, before);
     runner->type->set_state(runner->engine, before);
     memcpy(force, sheet->warp.pulled, size * sizeof *force);
-    for (int f = 0; f < sheet->followers; f++)
-        memcpy(slope + 3 * size * (size_t)f, sheet->hold[sheet->follower[f]].slope,
-               3 * size * sizeof *slope);
+    if (sheet->followers)
+        memcpy(slope, sheet->slope, 3 * size * (size_t)sheet->followers * sizeof *slope);
     bench_runner_step(runner);
     check_step(sheet, before, force, slope, found);
     check_holds(body, found);

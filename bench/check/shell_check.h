@@ -16,4 +16,9 @@ void bench_shell_check_body(const RefShellBody *body, BenchElasticFound *found);
  * without forces and holds. Of a shell that does not break. */
 void bench_shell_check_state(BenchRunner *runner, BenchElasticFound *found);
 
+/* One that has cracks, in the end: functions where there are any sum up to 1 and their slopes to 0;
+ * rigid motions cost nothing; energy does not grow without forces; and the carried points are
+ * finite. */
+void bench_shell_check_broken(const RefShellBody *body, BenchElasticFound *found);
+
 #endif

@@ -7,7 +7,7 @@
 #include "../../lib/system/clock.h"
 #include "../../reference/meshless/shell_engine.h"
 #include "../check/shell_check.h"
-#include "../measure/disturbance.h"
+#include "../measure/burst.h"
 #include "../scene/map.h"
 #include "experiments.h"
 
@@ -250,70 +250,48 @@ SmCode bench_shell_frames(const BenchExperiment *of, SmError *error)
 
 /* ---- bursting */
 
-/* What a body's steps took, those apart in which cracks changed, and its nodes before and after. */
-typedef struct {
-    int steps[2];
-    double *ms[2];
-    long nodes[2];
-    bool busy; /* others disturbed the times */
-} Burst;
-
-static void play_burst(BenchRunner *runner, int steps, Burst *burst)
-{
-    const RefShellBody *body = ref_shell_body(runner->engine);
-    BenchWatch watch = bench_watch(1);
-    burst->nodes[0] = body->sheet.shell.nodes.count;
-    for (int s = 0; s < steps; s++) {
-        int before = body->breaking->cracked.cracks.now;
-        bench_watch_start(&watch);
-        bench_runner_step(runner);
-        double seconds = bench_watch_stop(&watch);
-        bench_watch_count(&watch);
-        int changed = body->breaking->cracked.cracks.now != before;
-        burst->ms[changed][burst->steps[changed]++] = 1e3 * seconds;
-    }
-    burst->busy = bench_watch_busy(&watch);
-    burst->nodes[1] = body->sheet.shell.nodes.count;
-}
-
-static void add_burst(const BenchExperiment *of, const Burst *burst)
+static void add_burst(const BenchExperiment *of, const BenchBurst *burst)
 {
     if (!strcmp(of->measure->field, "growth-percent")) {
         bench_curve_exact(of->curve, 0,
                           100 * ((double)burst->nodes[1] / (double)burst->nodes[0] - 1));
         return;
     }
-    if (!burst->steps[0] || !burst->steps[1]) {
-        bench_curve_fail(of->curve, "%d steps with new cracks and %d without", burst->steps[1],
-                         burst->steps[0]);
-        return;
+    double *ms[2] = {sm_alloc((size_t)burst->steps, sizeof(double)),
+                     sm_alloc((size_t)burst->steps, sizeof(double))};
+    int steps[2];
+    for (int cracked = 0; cracked < 2; cracked++)
+        steps[cracked] = bench_burst_seconds(burst, cracked, ms[cracked]);
+    of->curve->busy = bench_watch_busy(&burst->watch) && of->curve->valid;
+    if (!steps[0] || !steps[1]) {
+        bench_curve_fail(of->curve, "%d steps with new cracks and %d without", steps[1], steps[0]);
+    } else {
+        if (of->curve->busy)
+            bench_curve_fail(of->curve, "others took its processors (load average %.1f)",
+                             bench_load_average());
+        BenchInterval whole = bench_curve_interval(ms[0], steps[0], 0.5, 2);
+        BenchInterval crack = bench_curve_interval(ms[1], steps[1], 0.5, 2);
+        bench_curve_add(of->curve, 0, crack.value / whole.value, crack.low / whole.high,
+                        crack.high / whole.low);
     }
-    of->curve->busy = burst->busy && of->curve->valid;
-    if (of->curve->busy)
-        bench_curve_fail(of->curve, "others took its processors (load average %.1f)",
-                         bench_load_average());
-    BenchInterval whole = bench_curve_interval(burst->ms[0], burst->steps[0], 0.5, 2);
-    BenchInterval crack = bench_curve_interval(burst->ms[1], burst->steps[1], 0.5, 2);
-    bench_curve_add(of->curve, 0, crack.value / whole.value, crack.low / whole.high,
-                    crack.high / whole.low);
+    sm_free_all(ms[0], ms[1]);
 }
 
 SmCode bench_shell_bursting(const BenchExperiment *of, SmError *error)
 {
-    int steps = (int)of->scene->frames * of->scene->steps_per_frame;
     if (strcmp(of->scene->engine, ref_shell_engine.name) != 0 ||
         !(of->scene->meshless.strength > 0))
         return sm_fail(error, SM_INPUT, "'%.60s' is no shell that breaks", of->scene->name);
-    BenchRunner runner;
-    SmCode code = bench_runner_exact(of->scene, of->body, &runner, error);
+    BenchMeasureParams params = {.threads = 1};
+    BenchBurst burst;
+    BenchPlayback play;
+    SmCode code =
+        bench_burst_play(of->scene, of->body, &ref_shell_engine, &params, 1, &burst, &play, error);
     if (code) return code;
-    Burst burst = {.ms = {sm_alloc((size_t)steps, sizeof *burst.ms[0]),
-                          sm_alloc((size_t)steps, sizeof *burst.ms[0])}};
-    play_burst(&runner, steps, &burst);
-    if (ref_shell_body(runner.engine)->broke)
+    if (ref_shell_body(bench_playback_runner(&play)->engine)->broke)
         bench_curve_fail(of->curve, "a crack could not be followed");
     add_burst(of, &burst);
-    sm_free_all(burst.ms[0], burst.ms[1]);
-    bench_runner_free(&runner);
+    bench_burst_free(&burst);
+    bench_playback_free(&play);
     return SM_OK;
 }

@@ -11,6 +11,10 @@ typedef struct BenchChecker {
     /* SM_INPUT: the scene has what is not measured. Before anything is built. May be NULL. */
     SmCode (*takes)(const BenchScene *scene, SmError *error);
 
+    /* Whether what the scene makes of its body cannot be put back: then it is played (burst.h), and
+     * checked in the end. NULL: it can. */
+    bool (*breaks)(const BenchScene *scene);
+
     /* SM_INPUT: the bodies contradict themselves, or their check would take too much memory. May be
      * NULL. */
     SmCode (*accepts)(const BenchPlayback *play, SmError *error);

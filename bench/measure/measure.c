@@ -10,6 +10,7 @@
 #include "../../reference/paper.h"
 #include "../check/check.h"
 #include "../engines.h"
+#include "burst.h"
 #include "change_row.h"
 #include "checker.h"
 #include "step_timer.h"
@@ -189,15 +190,43 @@ static void count(const BenchPlayback *play, BenchRow *row)
     }
 }
 
+/* What is known of the bodies before they move. */
+static void describe(BenchPlayback *play, BenchRow *row)
+{
+    const BenchRunner *runner = bench_playback_runner(play);
+    const BenchEngine *engine = bench_engine(runner->type->name);
+    if (engine->fill) engine->fill(runner, row);
+    row->instances = play->body->instances;
+    count(play, row);
+}
+
+/* A body that cannot be put back: played from its beginning to its end, and checked then. */
+static SmCode measure_burst(const BenchScene *scene, const BenchBody *body,
+                            const SmEngineType *type, const BenchMeasureParams *params,
+                            void *worst, BenchRow *row, SmError *error)
+{
+    enum { ROUNDS = 3 };
+    const BenchChecker *checker = bench_engine(type->name)->checker;
+    BenchBurst burst;
+    BenchPlayback play;
+    SmCode code = bench_burst_play(scene, body, type, params, ROUNDS, &burst, &play, error);
+    if (code) return code;
+    code = bench_playback_change(&play, error); /* the surface that is checked */
+    name_row(scene, body, type, params, row);
+    describe(&play, row);
+    bench_burst_row(&burst, row);
+    bench_playback_hash(&play, row->state_hash);
+    checker->state(NULL, &play, worst, row);
+    bench_burst_free(&burst);
+    bench_playback_free(&play);
+    return code;
+}
+
 static void measure_start(Trial *trial, const BenchChecker *checker,
                           const BenchMeasureParams *params, void *worst, BenchRow *row)
 {
     void *check = checker->begin ? checker->begin(&trial->play) : NULL;
-    const BenchRunner *runner = bench_playback_runner(&trial->play);
-    const BenchEngine *engine = bench_engine(runner->type->name);
-    if (engine->fill) engine->fill(runner, row);
-    row->instances = trial->play.body->instances;
-    count(&trial->play, row);
+    describe(&trial->play, row);
     if (checker->rest) checker->rest(check, &trial->play, worst, row);
     for (int i = 0; i < trial->play.scene->settle; i++) step(trial, NULL);
     bench_playback_hash(&trial->play, row->state_hash);
@@ -209,17 +238,15 @@ static void measure_start(Trial *trial, const BenchChecker *checker,
     if (checker->free) checker->free(check);
 }
 
-SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
-                     const BenchMeasureParams *params, BenchRow *row, SmError *error)
+/* A body that is put back for every segment that is timed, and then played if it changes. */
+static SmCode measure_state(const BenchScene *scene, const BenchBody *body,
+                            const SmEngineType *type, const BenchMeasureParams *params, void *worst,
+                            BenchRow *row, SmError *error)
 {
-    const BenchEngine *engine = bench_engine(type->name);
-    const BenchChecker *checker = engine->checker;
+    const BenchChecker *checker = bench_engine(type->name)->checker;
     Trial trial = {.before = sm_engine_stages(type)->before};
-    if (engine->frames) type = engine->frames;
-    SmCode code = checker->takes ? checker->takes(scene, error) : SM_OK;
-    if (!code)
-        code = bench_playback_create(scene, body, type, params->threads, params->seed, &trial.play,
-                                     error);
+    SmCode code = bench_playback_create(scene, body, type, params->threads, params->seed,
+                                        &trial.play, error);
     if (code) return code;
     if (checker->accepts) code = checker->accepts(&trial.play, error);
     if (code) {
@@ -227,12 +254,24 @@ SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEng
         return code;
     }
     name_row(scene, body, type, params, row);
-    if (params->progress) bench_progress_show(params->progress, row->scene, 0);
-    void *worst = sm_alloc(1, checker->size);
     measure_start(&trial, checker, params, worst, row);
     bool changes = bench_playback_changes(&trial.play);
     free_trial(&trial);
-    if (changes) code = play_changes(scene, body, type, params, worst, row, error);
+    return changes ? play_changes(scene, body, type, params, worst, row, error) : SM_OK;
+}
+
+SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
+                     const BenchMeasureParams *params, BenchRow *row, SmError *error)
+{
+    const BenchEngine *engine = bench_engine(type->name);
+    const BenchChecker *checker = engine->checker;
+    SmCode code = checker->takes ? checker->takes(scene, error) : SM_OK;
+    if (code) return code;
+    if (engine->frames) type = engine->frames;
+    if (params->progress) bench_progress_show(params->progress, scene->name, 0);
+    void *worst = sm_alloc(1, checker->size);
+    bool breaks = checker->breaks && checker->breaks(scene);
+    code = (breaks ? measure_burst : measure_state)(scene, body, type, params, worst, row, error);
     free(worst);
     return code;
 }

@@ -5,6 +5,7 @@
 
 #include "../check/shell_check.h"
 #include "elastic_checker.h"
+#include "measure.h"
 
 void bench_shell_row_fill(const BenchRunner *runner, BenchRow *row)
 {
@@ -21,12 +22,9 @@ void bench_shell_row_fill(const BenchRunner *runner, BenchRow *row)
                                      .skin_seconds = body->skin_seconds};
 }
 
-static SmCode takes(const BenchScene *scene, SmError *error)
+static bool breaks(const BenchScene *scene)
 {
-    if (scene->meshless.strength > 0)
-        return sm_fail(error, SM_INPUT,
-                       "%s: a shell that breaks cannot be put back to be timed again", scene->file);
-    return bench_elastic_takes(scene, error);
+    return scene->meshless.strength > 0;
 }
 
 static void rest(void *check, BenchPlayback *play, void *worst, BenchRow *row)
@@ -36,15 +34,38 @@ static void rest(void *check, BenchPlayback *play, void *worst, BenchRow *row)
     bench_elastic_row_note(worst, row);
 }
 
+/* One that has come apart: its matrices, made again step by step, are those made anew of the same
+ * cracks; and what is drawn of it is closed and finite. */
+static void check_broken(BenchGroup *group, BenchElasticFound *found, BenchRow *row)
+{
+    RefShellBody *body = ref_shell_body(group->runner.engine);
+    bench_shell_check_broken(body, found);
+    if (body->broke) bench_row_invalidate(row, "a crack could not be followed");
+    if (!ref_cracked_same_anew(&body->breaking->cracked))
+        bench_row_invalidate(row, "matrices differ from those made anew of the same cracks");
+    SmMeshInfo info = sm_mesh_info(&group->skin.surface);
+    if (info.open_edges + info.nonmanifold_edges > 0)
+        bench_row_invalidate(row, "the surface has %ld open edges and %ld of several triangles",
+                             info.open_edges, info.nonmanifold_edges);
+}
+
 static void state(void *check, BenchPlayback *play, void *worst, BenchRow *row)
 {
     (void)check;
-    bench_shell_check_state(&play->group[0].runner, worst);
+    BenchGroup *group = &play->group[0];
+    if (breaks(play->scene))
+        check_broken(group, worst, row);
+    else
+        bench_shell_check_state(&group->runner, worst);
     bench_elastic_row_note(worst, row);
 }
 
 const BenchChecker bench_shell_checker = {
-    .size = sizeof(BenchElasticFound), .takes = takes, .rest = rest, .state = state};
+    .size = sizeof(BenchElasticFound),
+                                          .takes = bench_elastic_takes,
+                                          .breaks = breaks,
+                                          .rest = rest,
+                                          .state = state};
 
 void bench_shell_row_describe(const BenchRunner *runner, const SmCounts *counts)
 {
@@ -68,6 +89,11 @@ void bench_shell_row_describe(const BenchRunner *runner, const SmCounts *counts)
 void bench_shell_row_explain(FILE *file, const BenchRow *row)
 {
     const BenchElasticRow *e = &row->elastic;
+    if (e->whole_ms != 0)
+        fprintf(file,
+                "    the time is that of steps that make cracks or let some grow; others: %.3g ms; "
+                "%ld nodes at first, %ld in the end\n",
+                e->whole_ms, e->nodes, e->end_nodes);
     fprintf(
         file,
         "    parameters in %.3g s, angles off by %.2g degrees (median); matrices of %ld nodes in "

@@ -4,7 +4,6 @@
 #include <stdlib.h>
 
 #include "../system/statistic.h"
-#include "disturbance.h"
 
 typedef struct {
     BenchTimed timed;
@@ -164,6 +163,12 @@ static void find_busy(const BenchWatch *watch, BenchRow *row)
     for (int s = 0; s < SM_STAGES; s++) row->stage_ms[s] = NAN;
 }
 
+void bench_row_times(const BenchWatch *watch, BenchRow *row)
+{
+    summarise(row);
+    find_busy(watch, row);
+}
+
 void bench_time_steps(const BenchTimed *timed, const BenchMeasureParams *params, BenchRow *row)
 {
     Blocks blocks = {.timed = *timed, .threads = params->threads, .chunk = 1};
@@ -186,7 +191,6 @@ void bench_time_steps(const BenchTimed *timed, const BenchMeasureParams *params,
             bench_progress_show(params->progress, row->scene, (r + 1.0) / row->repeats);
     }
     bench_counters_close(&counters);
-    summarise(row);
     summarise_counters(row);
-    find_busy(&blocks.watch, row);
+    bench_row_times(&blocks.watch, row);
 }

@@ -14,6 +14,7 @@
 
 #include "../../lib/engine/stage.h"
 #include "../system/progress.h"
+#include "disturbance.h"
 #include "row.h"
 
 enum { BENCH_SEGMENT_STEPS = 64 };
@@ -38,5 +39,9 @@ typedef struct {
  * that ends in _ms, instruments_percent, fps, ns_per_particle_step, counters that can be read; its
  * `particles` is set. */
 void bench_time_steps(const BenchTimed *timed, const BenchMeasureParams *params, BenchRow *row);
+
+/* What is made of samples that are there: all that ends in _ms, instruments_percent, fps,
+ * ns_per_particle_step; and whether the watch calls them BUSY. */
+void bench_row_times(const BenchWatch *watch, BenchRow *row);
 
 #endif

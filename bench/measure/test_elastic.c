@@ -2,7 +2,6 @@
  * every format, and back from its file. */
 #include "../../lib/test_folder.h"
 #include "../../lib/test_frame.h"
-#include "../../reference/meshless/shell_engine.h"
 #include "../../reference/meshless/solve/solver.h"
 #include "../../reference/paper.h"
 #include "../check/elastic_check.h"
@@ -224,18 +223,6 @@ TEST(scenes_beyond_it_are_refused)
     assert_refused("instances = 2;", "several instances");
 }
 
-TEST(a_shell_that_breaks_is_refused)
-{
-    BenchRow row = {0};
-    BenchMeasureParams params = {.threads = 1};
-    SmError error;
-    scene.meshless.strength = 1;
-    assert_int_equal(bench_measure(&scene, &body, &ref_shell_engine, &params, &row, &error),
-                     SM_INPUT);
-    assert_non_null(strstr(error.text, "breaks"));
-    scene.meshless.strength = 0;
-}
-
 /* What get_state() keeps, set_state() puts back: the same step, bit for bit. And velocities are
  * what a step came by, but for what the constraints correct of it. */
 TEST(a_state_is_put_back)
@@ -338,7 +325,7 @@ TEST(its_row_is_a_table_of_its_own)
     assert_non_null(strstr(text, "\\begin{tabular}"));
     write_row(&row, BENCH_AS_CSV, text, sizeof text);
     assert_non_null(strstr(text, ",nodes,modes,matrices_s,modes_s,"));
-    assert_non_null(strstr(text, ",motion_ms,skin_ms,parameters_s,end_nodes\n"));
+    assert_non_null(strstr(text, ",motion_ms,skin_ms,parameters_s,end_nodes,whole_ms\n"));
     assert_non_null(strstr(text, ",,,,,")); /* it has no stages of shape matching */
     write_row(&row, BENCH_AS_JSON, text, sizeof text);
     assert_non_null(strstr(text, "\"matrices_s\""));

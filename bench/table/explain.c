@@ -59,7 +59,10 @@ static void brief_row(FILE *file, const BenchRow *row, int width)
         return;
     }
     bench_grid_range(row->total_low_ms, row->total_high_ms, range);
-    fprintf(file, "; %s ms\n", range);
+    fprintf(file, "; %s ms", range);
+    if (row->elastic.whole_ms > 0)
+        fprintf(file, " with new cracks, %.3g without", row->elastic.whole_ms);
+    fputc('\n', file);
 }
 
 void bench_explain_briefly(FILE *file, const BenchRow *rows, int count)

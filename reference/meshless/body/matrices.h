@@ -36,6 +36,9 @@ SmCode ref_matrices_build(const RefOctants *tree, const RefNodes *nodes, RefBasi
                           const RefMaterial *material, RefMatrices *matrices, SmError *error);
 void ref_matrices_free(RefMatrices *matrices);
 
+/* Whether they have the same entries, bit by bit. */
+bool ref_matrices_same(const RefMatrices *one, const RefMatrices *other);
+
 /* SM_USAGE, and a line that says which number is out of range. */
 SmCode ref_material_check(const RefMaterial *material, SmError *error);
 

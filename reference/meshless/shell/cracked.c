@@ -184,6 +184,11 @@ bool ref_cracked_side(const RefCracked *cracked, const double theta[2], const do
     return shape->count > 0;
 }
 
+bool ref_cracked_seen(const RefCracked *cracked, long node)
+{
+    return cracked->rows.row[node].sum[0][0] > 0;
+}
+
 int ref_cracked_node(const RefCracked *cracked, const double theta[2])
 {
     int c = ref_quadtree_at(&cracked->shell->tree, theta), n = sample_beside(cracked, c, theta);
@@ -220,6 +225,16 @@ void ref_cracked_remake(RefCracked *cracked)
     ref_shape_free(&shape);
     ref_shape_free(&whole);
     free(touched);
+}
+
+bool ref_cracked_same_anew(RefCracked *cracked)
+{
+    RefMatrices *matrices = &cracked->shell->matrices, updated = *matrices;
+    *matrices = (RefMatrices){.lumped = false};
+    ref_cracked_remake(cracked);
+    bool same = ref_matrices_same(&updated, matrices);
+    ref_matrices_free(&updated);
+    return same;
 }
 
 void ref_cracked_create(RefShell *shell, const RefShellOptions *options,
@@ -465,7 +480,7 @@ void ref_cracked_update(RefCracked *cracked, const RefCrackedFields *fields)
     add_up(cracked, touched);
     count_all(cracked);
     for (long n = 0; n < shell->nodes.count; n++) /* nodes that nothing sees are at rest */
-        for (int f = 0; fields && f < fields->count && !(cracked->rows.row[n].sum[0][0] > 0); f++)
+        for (int f = 0; fields && f < fields->count && !ref_cracked_seen(cracked, n); f++)
             memset(fields->field[f] + 3 * n, 0, sizeof(double[3]));
     ref_cracks_settle(&cracked->cracks);
     ref_fields_before_free(&before);

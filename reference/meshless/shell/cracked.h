@@ -103,6 +103,9 @@ void ref_cracked_saved_free(RefCrackedSaved *saved);
 bool ref_cracked_side(const RefCracked *cracked, const double theta[2], const double eye[2],
                       RefShape *shape);
 
+/* Whether any sample sees a node; others are tied to where they are by a stiffness of their own. */
+bool ref_cracked_seen(const RefCracked *cracked, long node);
+
 /* One of the nodes that move a place; -1: none does. */
 int ref_cracked_node(const RefCracked *cracked, const double theta[2]);
 
@@ -111,5 +114,8 @@ bool ref_cracked_again(const RefCracked *cracked, long cell);
 
 /* The slow twin: makes all again, of the tree and the nodes as they are. */
 void ref_cracked_remake(RefCracked *cracked);
+
+/* The same; whether the matrices that came of updates have the same bits. */
+bool ref_cracked_same_anew(RefCracked *cracked);
 
 #endif

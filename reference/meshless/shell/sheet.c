@@ -16,7 +16,7 @@ static void forget_holds(RefSheet *sheet)
 {
     sheet->hold = NULL;
     sheet->follower = NULL;
-    sheet->aim = sheet->gap = sheet->yield = NULL;
+    sheet->aim = sheet->slope = sheet->answer = sheet->gap = sheet->yield = NULL;
     sheet->rows = (RefRows){0};
     sheet->holds = sheet->followers = 0;
 }
@@ -24,10 +24,10 @@ static void forget_holds(RefSheet *sheet)
 static void release(RefSheet *sheet)
 {
     for (int k = 0; k < sheet->holds; k++)
-        sm_free_all(sheet->hold[k].x, sheet->hold[k].reach, sheet->hold[k].slope,
-                    sheet->hold[k].answer, sheet->hold[k].flux);
+        sm_free_all(sheet->hold[k].x, sheet->hold[k].reach, sheet->hold[k].flux);
     ref_rows_free(&sheet->rows);
-    sm_free_all(sheet->hold, sheet->follower, sheet->aim, sheet->gap, sheet->yield);
+    sm_free_all(sheet->hold, sheet->follower, sheet->aim, sheet->slope, sheet->answer, sheet->gap,
+                sheet->yield);
     forget_holds(sheet);
 }
 
@@ -173,7 +173,9 @@ static void find_leads(RefSheet *sheet, const RefRows *rows)
         sheet->hold[k].lead = lead;
         if (lead < k) sheet->follower[sheet->followers++] = k;
     }
-    size_t count = 3 * (size_t)sheet->followers;
+    size_t count = 3 * (size_t)sheet->followers, size = 3 * (size_t)sheet->warp.nodes;
+    sheet->slope = sm_alloc(count * size, sizeof *sheet->slope);
+    sheet->answer = sm_alloc(count * size, sizeof *sheet->answer);
     sheet->gap = sm_alloc(count, sizeof *sheet->gap);
     sheet->yield = sm_alloc(count * count, sizeof *sheet->yield);
 }
@@ -196,7 +198,7 @@ static RefRows bind_rows(const RefRows *rows, const RefSheetHold *hold, int hold
  * of the surface that nothing holds. */
 static SmCode find_reaches(RefSheet *sheet, const RefRows *rows, SmError *error)
 {
-    size_t nodes = (size_t)sheet->warp.nodes, size = 9 * nodes;
+    size_t nodes = (size_t)sheet->warp.nodes;
     RefSolver *solver;
     if (sheet->followers == 0) return SM_OK;
     SmCode code = ref_warp_solver(&sheet->warp, &(RefRows){0}, &solver, error);
@@ -212,8 +214,6 @@ static SmCode find_reaches(RefSheet *sheet, const RefRows *rows, SmError *error)
             b[rows->column[e]] -= rows->value[e];
         hold->reach = sm_alloc(nodes, sizeof *hold->reach);
         ref_solver_solve(solver, b, NULL, hold->reach);
-        hold->slope = sm_alloc(size, sizeof *hold->slope);
-        hold->answer = sm_alloc(size, sizeof *hold->answer);
         hold->flux = sm_alloc(REF_WARP_PLACES * (size_t)sheet->warp.cells, sizeof *hold->flux);
         ref_warp_flux(&sheet->warp, hold->reach, hold->flux);
     }
@@ -407,13 +407,19 @@ void ref_sheet_aim(RefSheet *sheet, int k, const double pose[3][4])
 /* The slopes of one coordinate of the places that are held, and the answers. */
 static void find_slopes(RefSheet *sheet, int axis)
 {
-    size_t from = 3 * (size_t)sheet->warp.nodes * (size_t)axis;
-    for (int f = 0; f < sheet->followers; f++) {
-        const RefSheetHold *hold = sheet->hold + sheet->follower[f];
-        ref_warp_slope(&sheet->warp, (const double(*)[2])hold->flux, axis,
-                       (double(*)[3])(hold->slope + from));
-        ref_solver_solve(sheet->steps.solver, hold->slope + from, NULL, hold->answer + from);
-    }
+    size_t size = 3 * (size_t)sheet->warp.nodes, from = (size_t)(axis * sheet->followers) * size;
+    if (sheet->followers == 0) return;
+    for (int f = 0; f < sheet->followers; f++)
+        ref_warp_slope(&sheet->warp, (const double(*)[2])sheet->hold[sheet->follower[f]].flux, axis,
+                       (double(*)[3])(sheet->slope + from + (size_t)f * size));
+    ref_solver_solve_several(sheet->steps.solver, sheet->followers, sheet->slope + from, NULL,
+                             sheet->answer + from);
+}
+
+/* Where slopes and answers of coordinate number c of all followers' begin. */
+static size_t of_coordinate(const RefSheet *sheet, size_t c)
+{
+    return (c % 3 * (size_t)sheet->followers + c / 3) * 3 * (size_t)sheet->warp.nodes;
 }
 
 void ref_sheet_pose(RefSheet *sheet)
@@ -429,15 +435,15 @@ static void find_gaps(RefSheet *sheet)
 {
     const RefWarp *warp = &sheet->warp;
     size_t size = 3 * (size_t)warp->nodes;
-    double *gap = sheet->gap;
-    for (int f = 0; f < sheet->followers; f++)
-        for (size_t d = 0; d < 3; d++, gap++) {
-            const RefSheetHold *hold = sheet->hold + sheet->follower[f];
-            *gap = warp->target[hold->row][d] - warp->target[sheet->hold[hold->lead].row][d];
-            for (long n = 0; n < warp->nodes; n++) *gap -= hold->reach[n] * warp->right[n][d];
-            for (size_t n = 0; n < size; n++)
-                *gap -= hold->slope[d * size + n] * sheet->steps.h * sheet->steps.v[n];
-        }
+    for (size_t c = 0; c < 3 * (size_t)sheet->followers; c++) {
+        const RefSheetHold *hold = sheet->hold + sheet->follower[c / 3];
+        const double *slope = sheet->slope + of_coordinate(sheet, c);
+        double *gap = sheet->gap + c;
+        size_t d = c % 3;
+        *gap = warp->target[hold->row][d] - warp->target[sheet->hold[hold->lead].row][d];
+        for (long n = 0; n < warp->nodes; n++) *gap -= hold->reach[n] * warp->right[n][d];
+        for (size_t n = 0; n < size; n++) *gap -= slope[n] * sheet->steps.h * sheet->steps.v[n];
+    }
 }
 
 /* Moves by the forces that close the gaps. A trace of regularisation makes holds harmless that
@@ -448,9 +454,9 @@ static void close_gaps(RefSheet *sheet)
     double *S = sheet->yield, *gap = sheet->gap, trace = 0;
     find_gaps(sheet);
     for (size_t c = 0; c < count; c++) {
-        const double *answer = sheet->hold[sheet->follower[c / 3]].answer + c % 3 * size;
+        const double *answer = sheet->answer + of_coordinate(sheet, c);
         for (size_t r = 0; r < count; r++) {
-            const double *slope = sheet->hold[sheet->follower[r / 3]].slope + r % 3 * size;
+            const double *slope = sheet->slope + of_coordinate(sheet, r);
             S[r * count + c] = 0;
             for (size_t n = 0; n < size; n++) S[r * count + c] += slope[n] * answer[n];
         }
@@ -459,7 +465,7 @@ static void close_gaps(RefSheet *sheet)
     for (size_t c = 0; c < count; c++) S[c * count + c] += 1e-12 * trace;
     ref_least_squares_solve((int)count, 0, S, gap);
     for (size_t c = 0; c < count; c++) {
-        const double *answer = sheet->hold[sheet->follower[c / 3]].answer + c % 3 * size;
+        const double *answer = sheet->answer + of_coordinate(sheet, c);
         for (size_t n = 0; n < size; n++) {
             sheet->steps.u[n] += gap[c] * answer[n];
             sheet->steps.v[n] += gap[c] * answer[n] / sheet->steps.h;

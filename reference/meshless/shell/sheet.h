@@ -31,9 +31,7 @@ typedef struct {
     double pose[3][4];    /* where it is to be, by a turn and a shift of the place at rest */
     double turn[3];       /* the pose's rotation vector */
     int lead;             /* the first hold of the same piece, maybe itself, */
-    /* beside which what tangents gain moves another one by so much, [nodes]; the slopes of that
-     * one's three coordinates by the parameters, [3][3 nodes], and what forces along these do. */
-    double *reach, *slope, *answer;
+    double *reach; /* beside which what tangents gain moves another one by so much, [nodes] */
     double (*flux)[2]; /* the first one's, at the warp's places */
 } RefSheetHold;
 
@@ -48,6 +46,9 @@ typedef struct {
     int holds;
     RefSheetHold *hold;
     int followers, *follower; /* holds that others lead */
+    /* [3][followers][3 nodes] the slopes of the three coordinates of followers' places by the
+     * parameters, and what forces along these do. */
+    double *slope, *answer;
     double *gap, *yield; /* [3 followers]; and its square: how far a force at each moves each */
     RefRows rows;        /* of the steps: what leading holds bind, and shapes and turns of others */
     double *aim;         /* [rows] their values */

@@ -223,7 +223,7 @@ SmCode ref_warp_create(const RefShell *shell, RefWarp *warp, SmError *error)
     memcpy(warp->X, shell->X, nodes * sizeof *warp->X);
     warp->near = sm_alloc(nodes + 1, sizeof *warp->near);
     warp->mass = sm_alloc(nodes, sizeof *warp->mass);
-    for (int k = 0; k < 2; k++) warp->column[k] = sm_alloc(nodes, sizeof(double));
+    for (int k = 0; k < 2; k++) warp->column[k] = sm_alloc(3 * nodes, sizeof(double));
     warp->sum = sm_alloc(nodes, sizeof *warp->sum);
     make_cells(shell, warp);
     make_normals(shell, warp);
@@ -259,7 +259,7 @@ SmCode ref_warp_hold(RefWarp *warp, const RefRows *rows, SmError *error)
     warp->solver = solver;
     warp->rows = ref_rows_copy(rows);
     warp->target = sm_alloc((size_t)rows->count, sizeof *warp->target);
-    warp->bound = sm_alloc((size_t)rows->count, sizeof *warp->bound);
+    warp->bound = sm_alloc(3 * (size_t)rows->count, sizeof *warp->bound);
     for (long p = 0; p < warp->pieces; p++) warp->held[p] = false;
     for (long e = 0; rows->count && e < rows->start[rows->count]; e++)
         warp->held[warp->piece[rows->column[e]]] = true;
@@ -273,12 +273,14 @@ static void solve(RefWarp *warp, const double (*right)[3], const double (*target
                   double (*left)[3])
 {
     double *b = warp->column[0], *x = warp->column[1], *bound = warp->bound;
+    long nodes = warp->nodes, rows = target ? warp->rows.count : 0;
     for (int d = 0; d < 3; d++) {
-        for (long n = 0; n < warp->nodes; n++) b[n] = right[n][d];
-        for (long r = 0; target && r < warp->rows.count; r++) bound[r] = target[r][d];
-        ref_solver_solve(warp->solver, b, target && warp->rows.count ? bound : NULL, x);
-        for (long n = 0; n < warp->nodes; n++) left[n][d] = x[n];
+        for (long n = 0; n < nodes; n++) b[d * nodes + n] = right[n][d];
+        for (long r = 0; r < rows; r++) bound[d * rows + r] = target[r][d];
     }
+    ref_solver_solve_several(warp->solver, 3, b, rows ? bound : NULL, x);
+    for (int d = 0; d < 3; d++)
+        for (long n = 0; n < nodes; n++) left[n][d] = x[d * nodes + n];
 }
 
 /* The turn of a place, from the slopes of u there. */

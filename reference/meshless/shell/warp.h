@@ -63,8 +63,8 @@ typedef struct {
     double (*drawn)[3];  /* [nodes] and the rest of them, whatever the pose */
     RefWarpTurn *turn;   /* [4 cells] */
     double (*sum)[REF_FRAME_SLOPES]; /* [nodes] */
-    double *column[2];               /* [nodes] */
-    double *bound;                   /* [rows] */
+    double *column[2];               /* [3][nodes] */
+    double *bound;                   /* [3][rows] */
     double (*all)[3];                /* [pieces] */
 } RefWarp;
 

@@ -25,10 +25,16 @@ void ref_solver_destroy(RefSolver *solver)
     (void)solver;
 }
 
+void ref_solver_solve_several(RefSolver *solver, int count, const double *b, const double *target,
+                              double *x)
+{
+    (void)solver, (void)count, (void)b, (void)target, (void)x;
+    abort(); /* there is no solver to call it with */
+}
+
 void ref_solver_solve(RefSolver *solver, const double *b, const double *target, double *x)
 {
-    (void)solver, (void)b, (void)target, (void)x;
-    abort(); /* there is no solver to call it with */
+    ref_solver_solve_several(solver, 1, b, target, x);
 }
 
 int ref_solver_rank(const RefSolver *solver)

@@ -10,7 +10,7 @@ const bool ref_solver_built = true;
 struct RefSolver {
     cholmod_common common;
     cholmod_factor *factor;
-    cholmod_dense *result, *work[2]; /* of solves, once there was one */
+    cholmod_dense *result[2], *work[2][2]; /* of solves for one right side and for several */
     int size, rows, rank;
     RefRows A;
     double *response; /* [rows][size] K'^-1 A^T, row by row */
@@ -81,20 +81,21 @@ static cholmod_sparse *held(cholmod_sparse *matrix, const RefMatrices *matrices,
     return sum;
 }
 
-static void solve_free(RefSolver *solver, const double *b, double *x)
+static void solve_free(RefSolver *solver, int count, const double *b, double *x)
 {
-    size_t size = (size_t)solver->size;
+    size_t size = (size_t)solver->size, columns = (size_t)count;
+    int of = count > 1;
     cholmod_dense right = {.nrow = size,
-                           .ncol = 1,
-                           .nzmax = size,
+                           .ncol = columns,
+                           .nzmax = columns * size,
                            .d = size,
                            .x = (double *)b,
                            .xtype = CHOLMOD_REAL,
                            .dtype = CHOLMOD_DOUBLE};
 #pragma omp teams num_teams(1) thread_limit(1)
-    cholmod_solve2(CHOLMOD_A, solver->factor, &right, NULL, &solver->result, NULL, &solver->work[0],
-                   &solver->work[1], &solver->common);
-    memcpy(x, solver->result->x, size * sizeof *x);
+    cholmod_solve2(CHOLMOD_A, solver->factor, &right, NULL, &solver->result[of], NULL,
+                   &solver->work[of][0], &solver->work[of][1], &solver->common);
+    memcpy(x, solver->result[of]->x, columns * size * sizeof *x);
 }
 
 /* What the rows' multipliers do, and the Schur complement with its independent rows. */
@@ -111,7 +112,7 @@ static void complement(RefSolver *solver)
     for (size_t r = 0; r < rows; r++) {
         memset(dense, 0, size * sizeof *dense);
         row_of(&solver->A, (long)r, dense);
-        solve_free(solver, dense, solver->response + r * size);
+        solve_free(solver, 1, dense, solver->response + r * size);
     }
     for (size_t r = 0; r < rows; r++)
         for (size_t c = 0; c < rows; c++)
@@ -170,8 +171,10 @@ void ref_solver_destroy(RefSolver *solver)
 {
     if (!solver) return;
     cholmod_free_factor(&solver->factor, &solver->common);
-    cholmod_free_dense(&solver->result, &solver->common);
-    for (int k = 0; k < 2; k++) cholmod_free_dense(&solver->work[k], &solver->common);
+    for (int of = 0; of < 2; of++) {
+        cholmod_free_dense(&solver->result[of], &solver->common);
+        for (int k = 0; k < 2; k++) cholmod_free_dense(&solver->work[of][k], &solver->common);
+    }
     cholmod_finish(&solver->common);
     ref_rows_free(&solver->A);
     sm_free_all(solver->response, solver->S, solver->order, solver->y, solver);
@@ -192,14 +195,10 @@ static void solve_complement(const RefSolver *solver, double *y)
     }
 }
 
-void ref_solver_solve(RefSolver *solver, const double *b, const double *target, double *x)
+/* Moves a solution of the free body to where the rows want it. */
+static void bind(const RefSolver *solver, const double *target, double *x)
 {
     size_t size = (size_t)solver->size;
-    if (b)
-        solve_free(solver, b, x);
-    else
-        memset(x, 0, size * sizeof *x);
-    if (!solver->rank) return;
     double *y = solver->y;
     for (int i = 0; i < solver->rank; i++) {
         int row = solver->order[i];
@@ -210,6 +209,23 @@ void ref_solver_solve(RefSolver *solver, const double *b, const double *target, 
         const double *response = solver->response + (size_t)solver->order[i] * size;
         for (size_t n = 0; n < size; n++) x[n] -= y[i] * response[n];
     }
+}
+
+void ref_solver_solve_several(RefSolver *solver, int count, const double *b, const double *target,
+                              double *x)
+{
+    size_t size = (size_t)solver->size, rows = (size_t)solver->rows;
+    if (b)
+        solve_free(solver, count, b, x);
+    else
+        memset(x, 0, (size_t)count * size * sizeof *x);
+    for (size_t c = 0; c < (size_t)count && solver->rank; c++)
+        bind(solver, target ? target + c * rows : NULL, x + c * size);
+}
+
+void ref_solver_solve(RefSolver *solver, const double *b, const double *target, double *x)
+{
+    ref_solver_solve_several(solver, 1, b, target, x);
 }
 
 int ref_solver_rank(const RefSolver *solver)

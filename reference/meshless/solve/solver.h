@@ -22,6 +22,11 @@ void ref_solver_destroy(RefSolver *solver);
 /* x: (K - shift M) x = b - A^T multipliers, A x = target. `b` and `target` may be NULL: zero. */
 void ref_solver_solve(RefSolver *solver, const double *b, const double *target, double *x);
 
+/* The same for `count` right sides at once, which reads the factor once: b and x are [count][size],
+ * target [count][rows]. Allocates when `count`, if above 1, is another than before. */
+void ref_solver_solve_several(RefSolver *solver, int count, const double *b, const double *target,
+                              double *x);
+
 /* Rows that count: those that do not follow from others. */
 int ref_solver_rank(const RefSolver *solver);
 
