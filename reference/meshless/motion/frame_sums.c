@@ -26,20 +26,44 @@ static void add(int modes, const double f[3], const double *row, double *modal)
         modal[k] += x * row[k] + y * row[modes + k] + z * row[2 * modes + k];
 }
 
-/* One vector of points; their sums stay in registers. */
-static void place_lanes(int nodes, const float *weight, const float (*moved)[3],
-                        float sum[3][LANES])
+/* Points whose sums stay in registers, six of them as of shells. */
+enum { PART = SM_VECTOR_BYTES < 32 ? LANES / 2 : LANES };
+
+/* Into sum, three rows of LANES. */
+static void place_part(int nodes, const float *weight, const float (*moved)[3], float *sum)
 {
-    float x[LANES] = {0}, y[LANES] = {0}, z[LANES] = {0};
+    float x[PART] = {0}, y[PART] = {0}, z[PART] = {0};
     for (int n = 0; n < nodes; n++)
-        for (int p = 0; p < LANES; p++) {
+        for (int p = 0; p < PART; p++) {
             x[p] += weight[n * LANES + p] * moved[n][0];
             y[p] += weight[n * LANES + p] * moved[n][1];
             z[p] += weight[n * LANES + p] * moved[n][2];
         }
-    memcpy(sum[0], x, sizeof x);
-    memcpy(sum[1], y, sizeof y);
-    memcpy(sum[2], z, sizeof z);
+    memcpy(sum, x, sizeof x);
+    memcpy(sum + LANES, y, sizeof y);
+    memcpy(sum + 2 * LANES, z, sizeof z);
+}
+
+/* The same and `lift` times the turns of normals, in one pass over the weights. */
+static void lift_part(int nodes, const float *weight, const float (*moved)[3],
+                      const float (*turned)[3], const float *lift, float *sum)
+{
+    float x[PART] = {0}, y[PART] = {0}, z[PART] = {0};
+    float u[PART] = {0}, v[PART] = {0}, w[PART] = {0};
+    for (int n = 0; n < nodes; n++)
+        for (int p = 0; p < PART; p++) {
+            x[p] += weight[n * LANES + p] * moved[n][0];
+            y[p] += weight[n * LANES + p] * moved[n][1];
+            z[p] += weight[n * LANES + p] * moved[n][2];
+            u[p] += weight[n * LANES + p] * turned[n][0];
+            v[p] += weight[n * LANES + p] * turned[n][1];
+            w[p] += weight[n * LANES + p] * turned[n][2];
+        }
+    for (int p = 0; p < PART; p++) {
+        sum[p] = x[p] + lift[p] * u[p];
+        sum[LANES + p] = y[p] + lift[p] * v[p];
+        sum[2 * LANES + p] = z[p] + lift[p] * w[p];
+    }
 }
 
 static void gather(const RefSkin *skin, const RefSkinBlock *block, const double (*from)[3],
@@ -57,18 +81,19 @@ static void place(const RefSkin *skin, const RefSkinBlock *block, const double (
     gather(skin, block, moved, near);
     if (turned) gather(skin, block, turned, normal);
     for (int begin = 0; begin < block->points; begin += LANES, weight += LANES * block->nodes) {
-        float sum[3][LANES], up[3][LANES];
+        float sum[3 * LANES];
         long first = block->first + begin;
         int end = block->points - begin < LANES ? block->points - begin : LANES;
-        place_lanes(block->nodes, weight, (const float(*)[3])near, sum);
-        if (turned) {
-            place_lanes(block->nodes, weight, (const float(*)[3])normal, up);
-            for (int d = 0; d < 3; d++)
-                for (int p = 0; p < LANES; p++) sum[d][p] += skin->lift[first + p] * up[d][p];
+        for (int p = 0; p < end; p += PART) {
+            if (turned)
+                lift_part(block->nodes, weight + p, (const float(*)[3])near,
+                          (const float(*)[3])normal, skin->lift + first + p, sum + p);
+            else
+                place_part(block->nodes, weight + p, (const float(*)[3])near, sum + p);
         }
         for (int p = 0; p < end; p++)
             for (int d = 0; d < 3; d++)
-                position[first + p][d] = skin->rest[first + p][d] + (double)sum[d][p];
+                position[first + p][d] = skin->rest[first + p][d] + (double)sum[d * LANES + p];
     }
 }
 

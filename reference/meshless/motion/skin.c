@@ -15,7 +15,7 @@ typedef struct {
     int *number; /* [nodes] in the block's list, or -1 */
     int most;    /* functions of a point */
     int count[BLOCK];
-    int *node; /* [BLOCK][most] */
+    int *node, *list; /* [BLOCK][most] of the points; the block's */
     float *value;
     float lift[BLOCK];
     long loose;
@@ -29,6 +29,7 @@ static Builder builder_of(const RefSkinCarrier *carrier)
                        .number = sm_alloc((size_t)carrier->nodes->count, sizeof(int)),
                        .most = most,
                        .node = sm_alloc(BLOCK * (size_t)most, sizeof(int)),
+                       .list = sm_alloc(BLOCK * (size_t)most, sizeof(int)),
                        .value = sm_alloc(BLOCK * (size_t)most, sizeof(float))};
     for (long n = 0; n < carrier->nodes->count; n++) builder.number[n] = -1;
     return builder;
@@ -37,7 +38,7 @@ static Builder builder_of(const RefSkinCarrier *carrier)
 static void builder_free(Builder *builder)
 {
     ref_shape_free(&builder->shape);
-    sm_free_all(builder->number, builder->node, builder->value);
+    sm_free_all(builder->number, builder->node, builder->list, builder->value);
 }
 
 typedef struct {
@@ -78,29 +79,36 @@ static void evaluate(Builder *builder, int p, long point)
     }
 }
 
-/* The block's nodes, behind all others. */
-static void list_nodes(Builder *builder, RefSkin *skin, RefSkinBlock *block)
+/* The block's nodes. */
+static void list_nodes(Builder *builder, RefSkinBlock *block)
 {
-    block->node = skin->nodes;
     block->nodes = 0;
     for (int p = 0; p < block->points; p++)
         for (int n = 0; n < builder->count[p]; n++) {
             int node = builder->node[p * builder->most + n];
             if (builder->number[node] >= 0) continue;
-            sm_make_room(skin->node, skin->node_room, skin->nodes + 1);
-            builder->number[node] = block->nodes++;
-            skin->node[skin->nodes++] = node;
+            builder->number[node] = block->nodes;
+            builder->list[block->nodes++] = node;
         }
+}
+
+/* Behind all others, with some room for more: a block that changes is likely to change again. */
+static void make_slots(RefSkin *skin, RefSkinBlock *block)
+{
+    block->slots = block->slots ? block->nodes + block->nodes / 4 : block->nodes;
+    block->node = skin->nodes;
+    block->weight = skin->weights;
+    skin->nodes += block->slots;
+    skin->weights += (long)block->slots * block->room;
+    sm_make_room(skin->node, skin->node_room, skin->nodes);
+    sm_make_room(skin->weight, skin->weight_room, skin->weights);
 }
 
 static void fill_weights(Builder *builder, RefSkin *skin, RefSkinBlock *block)
 {
-    long size = (long)block->nodes * block->room;
-    block->weight = skin->weights;
-    sm_make_room(skin->weight, skin->weight_room, skin->weights + size);
-    float *weight = skin->weight + skin->weights;
-    memset(weight, 0, (size_t)size * sizeof *weight);
-    skin->weights += size;
+    float *weight = skin->weight + block->weight;
+    memset(weight, 0, (size_t)block->nodes * (size_t)block->room * sizeof *weight);
+    memcpy(skin->node + block->node, builder->list, (size_t)block->nodes * sizeof *skin->node);
     for (int p = 0; p < block->points; p++) {
         for (int n = 0; n < builder->count[p]; n++) {
             int column = builder->number[builder->node[p * builder->most + n]];
@@ -109,7 +117,7 @@ static void fill_weights(Builder *builder, RefSkin *skin, RefSkinBlock *block)
         }
         if (skin->lift) skin->lift[block->first + p] = builder->lift[p];
     }
-    for (int n = 0; n < block->nodes; n++) builder->number[skin->node[block->node + n]] = -1;
+    for (int n = 0; n < block->nodes; n++) builder->number[builder->list[n]] = -1;
 }
 
 static void weigh_block(Builder *builder, RefSkin *skin, RefSkinBlock *block)
@@ -117,7 +125,8 @@ static void weigh_block(Builder *builder, RefSkin *skin, RefSkinBlock *block)
     long before = builder->loose -= block->loose;
     for (int p = 0; p < block->points; p++) evaluate(builder, p, skin->order[block->first + p]);
     block->loose = (int)(builder->loose - before);
-    list_nodes(builder, skin, block);
+    list_nodes(builder, block);
+    if (block->nodes > block->slots) make_slots(skin, block);
     fill_weights(builder, skin, block);
 }
 
@@ -144,6 +153,7 @@ static void compact(RefSkin *skin)
                (size_t)block->nodes * sizeof *skin->node);
         memcpy(skin->weight + skin->weights, old.weight + block->weight,
                (size_t)size * sizeof *skin->weight);
+        block->slots = block->nodes;
         block->node = skin->nodes;
         block->weight = skin->weights;
         skin->nodes += block->nodes;

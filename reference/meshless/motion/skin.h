@@ -12,7 +12,7 @@ enum { REF_SKIN_LANES = 16 }; /* points that are placed at once */
 
 typedef struct {
     int points, room;         /* room: points rounded up to whole vectors */
-    int nodes, loose;         /* loose: of its points */
+    int nodes, slots, loose;  /* slots: nodes that there is room for; loose: of its points */
     long first, node, weight; /* where its points, nodes and weights begin */
     long cell;                /* its carrier's */
 } RefSkinBlock;
@@ -44,8 +44,8 @@ typedef struct {
 void ref_skin_build(const RefSkinCarrier *carrier, bool lifted, long count, const double (*x)[3],
                     RefSkin *skin, long *loose);
 
-/* Blocks that `stale` says so of are weighed again. What they had before is lost until it is
- * more than what is in use; then all moves together. `loose` (may be NULL) changes with them. */
+/* Blocks that `stale` says so of are weighed again, where they are if they have room. What others
+ * had before is lost until it is more than what is in use; then all moves together. `loose` (may be NULL) changes with them. */
 void ref_skin_renew(const RefSkinCarrier *carrier,
                     bool (*stale)(const void *data, long cell, int nodes, const int *node),
                     RefSkin *skin, long *loose);

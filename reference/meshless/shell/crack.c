@@ -264,10 +264,24 @@ void ref_cracks_grow(RefCracks *cracks, int arm, const double to[2])
     if (ends) ref_cracks_end(cracks, arm);
 }
 
+/* Whether both ends of one are beyond the other's along an axis. */
+static bool boxes_apart(const RefCrackPiece *piece, const double x[2], const double from[2])
+{
+    const double(*end)[2] = piece->end;
+    bool apart = false;
+    for (int d = 0; d < 2; d++) {
+        double low = x[d] < from[d] ? x[d] : from[d], high = x[d] < from[d] ? from[d] : x[d];
+        apart |= (end[0][d] < low) & (end[1][d] < low);
+        apart |= (end[0][d] > high) & (end[1][d] > high);
+    }
+    return apart;
+}
+
 /* Whether the way from `from` to x meets a piece, ends counted in. */
 static bool crosses(const RefCrackPiece *piece, const double x[2], const double from[2])
 {
     double along[2], way[2], a[2], b[2], to[2];
+    if (boxes_apart(piece, x, from)) return false;
     way_from(piece->end[0], piece->end[1], along);
     way_from(from, x, way);
     way_from(piece->end[0], from, a);

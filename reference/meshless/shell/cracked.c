@@ -386,13 +386,36 @@ static void fill_nodes(RefCracked *cracked, const unsigned char *fresh, RefField
     ref_shape_free(&whole);
 }
 
-/* Whether samples of a cell have other functions than before. */
-static bool is_stale(const RefCracked *cracked, const RefCrackedCell *cell,
-                     const unsigned char *fresh)
+/* Whether a crack has changed, or a node is new, whose cover may reach a cell. */
+static bool is_stirred(const RefCracked *cracked, long c, long count, const int *fresh)
+{
+    const RefQuadtree *tree = &cracked->shell->tree;
+    const RefNodes *nodes = &cracked->shell->nodes;
+    double middle[2], edge[2], low[2], high[2];
+    ref_quadtree_cell(tree, tree->cell + c, middle, edge);
+    for (long n = 0; n < count; n++) {
+        const double *at = nodes->position[fresh[n]], reach = nodes->reach[fresh[n]];
+        if (fabs(middle[0] - at[0]) < reach + edge[0] / 2 &&
+            fabs(middle[1] - at[1]) < reach + edge[1] / 2)
+            return true;
+    }
+    for (int d = 0; d < 2; d++) {
+        low[d] = middle[d] - edge[d] / 2 - cracked->cracks.margin;
+        high[d] = middle[d] + edge[d] / 2 + cracked->cracks.margin;
+    }
+    return ref_cracks_stir(&cracked->cracks, low, high);
+}
+
+/* Whether samples of a cell have other functions than before. `list` has the `count` new nodes,
+ * which `fresh` marks; they may have taken the numbers of nodes that are gone. */
+static bool is_stale(const RefCracked *cracked, long c, const unsigned char *fresh, long count,
+                     const int *list)
 {
     const RefNodes *nodes = &cracked->shell->nodes;
+    const RefCrackedCell *cell = cracked->cell + c;
     for (int n = 0; n < cell->element.count; n++)
         if (fresh[cell->element.node[n]]) return true;
+    if (!is_stirred(cracked, c, count, list)) return false;
     for (long p = 0; p < cell->samples.count; p++) {
         const double *x = cell->samples.theta[p];
         int near;
@@ -412,6 +435,17 @@ static void touch(const RefElement *element, unsigned char *touched)
     for (int n = 0; n < element->count; n++) touched[element->node[n]] = 1;
 }
 
+/* New nodes and their images: `count` of them, the caller's to free. */
+static int *list_fresh(const RefNodes *nodes, const unsigned char *fresh, long *count)
+{
+    long all = nodes->count + nodes->images;
+    int *list = sm_alloc((size_t)all, sizeof *list);
+    *count = 0;
+    for (long n = 0; n < all; n++)
+        if (fresh[nodes->owner ? nodes->owner[n] : n]) list[(*count)++] = (int)n;
+    return list;
+}
+
 /* Takes again what is not what it was; marks nodes whose rows change. Samples that there were are
  * kept in `before`. */
 static void remake_stale(RefCracked *cracked, const unsigned char *fresh, unsigned char *touched,
@@ -420,6 +454,8 @@ static void remake_stale(RefCracked *cracked, const unsigned char *fresh, unsign
     RefShell *shell = cracked->shell;
     RefShape shape = ref_shape_create(&shell->nodes), whole = ref_shape_create(&cracked->whole);
     RefThinWork work = ref_thin_work(shell->nodes.count);
+    long count;
+    int *list = list_fresh(&shell->nodes, fresh, &count);
     before->cells = shell->tree.count;
     before->samples = sm_alloc((size_t)before->cells, sizeof *before->samples);
     for (long c = 0; c < shell->tree.count; c++) {
@@ -427,14 +463,14 @@ static void remake_stale(RefCracked *cracked, const unsigned char *fresh, unsign
         const RefSamples *old = before->samples + c;
         bool was = cell->made;
         cell->again = false;
-        if (was && terminal(cracked, c) && !is_stale(cracked, cell, fresh)) continue;
+        if (was && terminal(cracked, c) && !is_stale(cracked, c, fresh, count, list)) continue;
         touch(&cell->element, touched);
-        ref_element_free(&cell->element);
         before->samples[c] = cell->samples;
         cell->samples = (RefSamples){.count = 0};
         cell->made = false;
         cell->again = true;
         if (!terminal(cracked, c)) {
+            ref_element_free(&cell->element);
             cell->nodes = 0;
             continue;
         }
@@ -448,6 +484,7 @@ static void remake_stale(RefCracked *cracked, const unsigned char *fresh, unsign
         touch(&cell->element, touched);
         cracked->counts.cells_again++;
     }
+    free(list);
     ref_thin_work_free(&work);
     ref_shape_free(&shape);
     ref_shape_free(&whole);

@@ -56,7 +56,7 @@ static void find_partners(long n, const Uses *uses, const RefElement *const *ele
         const RefElement *of = element[uses->element[u]];
         long a = uses->place[u];
         for (long b = a; b < of->count; b++) {
-            if (number[of->node[b]] >= 0 || of->sum[a * of->count + b][0] == 0) continue;
+            if (number[of->node[b]] >= 0 || ref_element_sum(of, a, b)[0] == 0) continue;
             number[of->node[b]] = 0;
             row->partner[row->count++] = of->node[b];
         }
@@ -75,8 +75,8 @@ static void sum_row(long n, const Uses *uses, const RefElement *const *element, 
         long a = uses->place[u];
         for (long b = a; b < of->count; b++) {
             int place = number[of->node[b]];
-            for (int k = 0; place >= 0 && k < 10; k++)
-                row->sum[place][k] += of->sum[a * of->count + b][k];
+            const double *sum = ref_element_sum(of, a, b);
+            for (int k = 0; place >= 0 && k < 10; k++) row->sum[place][k] += sum[k];
         }
     }
     for (int b = 0; b < row->count; b++) number[row->partner[b]] = -1;

@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "../../../lib/vector.h"
-#include "../solve/least_squares.h"
 
 enum { MOST_STEPS = 12 };
 
@@ -59,18 +58,15 @@ static void sum_parts(const RefWarp *warp, const RefShape *shape, double place[3
 static double step(const double place[3][3], const double normal[3][3], const double x[3],
                    double o[3])
 {
-    double slope[3][3], off[3], left[9] = {0}, right[3] = {0};
+    double slope[3][3], off[3], across[3][3];
     for (int d = 0; d < 3; d++) {
         for (int k = 0; k < 2; k++) slope[k][d] = place[1 + k][d] + o[2] * normal[1 + k][d];
         slope[2][d] = normal[0][d] + o[0] * normal[1][d] + o[1] * normal[2][d];
         off[d] = x[d] - place[0][d] - o[0] * place[1][d] - o[1] * place[2][d] - o[2] * slope[2][d];
     }
-    for (int d = 0; d < 3; d++) {
-        double row[3] = {slope[0][d], slope[1][d], slope[2][d]};
-        ref_least_squares_add(3, row, off[d], 1, left, right);
-    }
-    ref_least_squares_solve(3, 0, left, right);
-    for (int k = 0; k < 3; k++) o[k] += right[k];
+    for (int k = 0; k < 3; k++) sm_cross(slope[(k + 1) % 3], slope[(k + 2) % 3], across[k]);
+    double volume = sm_dot(slope[0], across[0]); /* Cramer's rule */
+    for (int k = 0; k < 3 && volume != 0; k++) o[k] += sm_dot(off, across[k]) / volume;
     return sqrt(sm_dot(off, off));
 }
 

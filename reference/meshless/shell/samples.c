@@ -43,12 +43,12 @@ static void place(const RefQuadtree *tree, const RefCell *cell, RefSamples *samp
  */
 static bool tame(const RefShape *shape, double edge)
 {
-    double slope = 0, second = 0;
+    bool wild = false;
     for (int n = 0; n < shape->count; n++) {
-        for (int d = 0; d < 2; d++) slope = fmax(slope, fabs(shape->gradient[n][d]));
-        for (int m = 0; m < 3; m++) second = fmax(second, fabs(shape->second[n][m]));
+        for (int d = 0; d < 2; d++) wild |= fabs(shape->gradient[n][d]) * edge > MOST_SLOPE;
+        for (int m = 0; m < 3; m++) wild |= fabs(shape->second[n][m]) * edge * edge > MOST_SECOND;
     }
-    return slope * edge <= MOST_SLOPE && second * edge * edge <= MOST_SECOND;
+    return !wild;
 }
 
 int ref_samples_shape(const RefNodes *nodes, RefBasis basis, double edge, const double x[3],
@@ -78,7 +78,8 @@ void ref_samples_expand(const RefSamples *samples, long near, const double theta
                         RefShape *shape)
 {
     const double *from = samples->theta[near];
-    double x = theta[0] - from[0], y = theta[1] - from[1], most = 0;
+    double x = theta[0] - from[0], y = theta[1] - from[1];
+    bool far = false;
     long start = samples->start[near];
     shape->count = (int)(samples->start[near + 1] - start);
     for (int n = 0; n < shape->count; n++) {
@@ -89,9 +90,9 @@ void ref_samples_expand(const RefSamples *samples, long near, const double theta
         shape->gradient[n][0] = p[1] + x * p[3] + y * p[5];
         shape->gradient[n][1] = p[2] + y * p[4] + x * p[5];
         for (int m = 0; m < 3; m++) shape->second[n][m] = p[3 + m];
-        most = fmax(most, fabs(shape->value[n]));
+        far |= fabs(shape->value[n]) > MOST_VALUE;
     }
-    if (most <= MOST_VALUE) return;
+    if (!far) return;
     for (int n = 0; n < shape->count; n++) {
         shape->value[n] = samples->part[start + n][0];
         memset(shape->gradient[n], 0, sizeof shape->gradient[n]);

@@ -133,17 +133,18 @@ void ref_element_free(RefElement *element)
 static void square_rows(const RefThinWork *work, RefElement *element)
 {
     int count = element->count, columns = columns_for(count);
+    double(*sum)[10] = element->sum;
     ref_frame_sums.square(REF_SAMPLES_PER_CELL, columns, work->shape, work->square);
     for (int a = 0; a < count; a++)
-        for (int b = a; b < count; b++)
-            element->sum[(long)a * count + b][0] = work->square[(long)a * columns + b];
+        for (int b = a; b < count; b++) (*sum++)[0] = work->square[(long)a * columns + b];
     columns = columns_for(3 * count);
     ref_frame_sums.square(6 * REF_SAMPLES_PER_CELL, columns, work->strain, work->square);
+    sum = element->sum;
     for (int a = 0; a < count; a++)
-        for (int b = a; b < count; b++)
+        for (int b = a; b < count; b++, sum++)
             for (int k = 0; k < 9; k++) {
                 int i = 3 * a + k / 3, j = 3 * b + k % 3, low = i < j ? i : j, high = i + j - low;
-                element->sum[(long)a * count + b][1 + k] = work->square[(long)low * columns + high];
+                (*sum)[1 + k] = work->square[(long)low * columns + high];
             }
 }
 
@@ -152,9 +153,13 @@ int ref_thin_element(const double (*X)[3], const RefSamples *samples, long cell,
 {
     int soft = 0, count = ref_samples_nodes(samples, cell, work->node, work->number);
     long wide = columns_for(3 * count), narrow = columns_for(count);
-    *element = (RefElement){.count = count,
-                            .node = sm_alloc((size_t)count, sizeof(int)),
-                            .sum = sm_alloc((size_t)count * (size_t)count, sizeof(double[10]))};
+    if (count > element->room) {
+        element->room = count;
+        element->node = sm_realloc(element->node, (size_t)count, sizeof *element->node);
+        free(element->sum);
+        element->sum = sm_alloc((size_t)(count * (count + 1) / 2), sizeof *element->sum);
+    }
+    element->count = count;
     memcpy(element->node, work->node, (size_t)count * sizeof *work->node);
     sm_make_room(work->strain, work->room[0], 6 * REF_SAMPLES_PER_CELL * wide);
     sm_make_room(work->shape, work->room[1], REF_SAMPLES_PER_CELL * narrow);
@@ -174,7 +179,7 @@ static void add_element(const RefElement *element, RefPairs *pairs)
     for (int a = 0; a < element->count; a++) {
         long at = pairs->start[element->node[a]];
         for (int b = a; b < element->count; b++) {
-            const double *sum = element->sum[(long)a * element->count + b];
+            const double *sum = ref_element_sum(element, a, b);
             while (pairs->partner[at] != element->node[b]) at++;
             pairs->mass[at] += sum[0];
             for (int k = 0; k < 9; k++) pairs->block[at][k] += sum[1 + k];
@@ -187,13 +192,13 @@ static long integrate_all(const double (*X)[3], const RefSamples *samples, doubl
                           const RefMaterial *material, RefPairs *pairs)
 {
     RefThinWork work = ref_thin_work(pairs->count);
+    RefElement element = {.count = 0};
     long soft = 0;
     for (long c = 0; c < samples->count / REF_SAMPLES_PER_CELL; c++) {
-        RefElement element;
         soft += ref_thin_element(X, samples, c, thickness, material, &work, &element);
         add_element(&element, pairs);
-        ref_element_free(&element);
     }
+    ref_element_free(&element);
     ref_thin_work_free(&work);
     return soft;
 }
