@@ -72,7 +72,7 @@
  *   covers, three edges wide, have a place inside, of five by five places in every cell.
  * - seam: one point: the largest difference of entries of `scene`'s stiffness matrix, in 1e-6 of
  *   the roots of their diagonals, from those of the same nodes where the map is cut open half a
- *   side farther along its first axis; covers are 0.2% wider than the shell's.
+ *   side farther along its first axis.
  * - frames: ms a frame of `scene`'s shell with so many nodes, range `n`, against their number.
  * - bursting: one point: of `scene`'s shell that breaks, once through its frames, `field`:
  *   "step-ratio", a step with new cracks by one without, medians; "growth-percent", the

@@ -164,17 +164,12 @@ static double difference(const RefShell *shell, const RefShell *other, const lon
     return most;
 }
 
-/* Covers of whole numbers of edges end, and have their jumps of second derivatives, on integration
- * points of cells that are larger: there rounding says what stiffness they have. */
-static const double wider = 1.002;
-
 static SmCode compare_shells(const BenchExperiment *of, const RefChart *chart, SmError *error)
 {
     RefMeshlessOptions options = bench_meshless_options(of->scene, of->body);
     SmBox box = sm_box_around(of->body->mesh.vertex_count, CONST(of->body->mesh.position));
     RefShellOptions wanted = ref_shell_options(&options, sm_box_longest(&box));
     RefChart moved = *chart;
-    wanted.eta = wider * (wanted.eta > 0 ? wanted.eta : 6);
     RefShell shell, other;
     moved.factor = moved_factor;
     moved.place = moved_place;

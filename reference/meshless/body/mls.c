@@ -35,12 +35,18 @@ void ref_shape_free(RefShape *shape)
     *shape = (RefShape){0};
 }
 
+/* Second derivatives jump at the ends of covers and half-way to them, and covers of whole numbers of
+ * edges have both on integration points of larger cells. Outside begins so little before: whatever
+ * is rounded how, they are outside's there. */
+static const double INSIDE = 1 - 1e-9;
+
 double ref_mls_spline(double s, double slope[2])
 {
     double a = fabs(s);
-    slope[0] = a < 0.5 ? -4 * s : copysign(4 * (1 - a), -s);
-    slope[1] = a < 0.5 ? -4 : 4;
-    return a < 0.5 ? 1 - 2 * s * s : 2 * (1 - a) * (1 - a);
+    bool near = a < 0.5 * INSIDE;
+    slope[0] = near ? -4 * s : copysign(4 * (1 - a), -s);
+    slope[1] = near ? -4 : 4;
+    return near ? 1 - 2 * s * s : 2 * (1 - a) * (1 - a);
 }
 
 /* The parts of a product of splines (eq. 12). */
@@ -98,7 +104,7 @@ INLINE void gather(const RefNodes *nodes, int dims, int terms, const double x[3]
         const double *at = nodes->position[member[n]];
         double reach = nodes->reach[member[n]], s[3] = {0};
         for (int d = 0; d < dims; d++) s[d] = (x[d] - at[d]) / reach;
-        if (!(fabs(s[0]) < 1 && fabs(s[1]) < 1 && fabs(s[2]) < 1)) continue;
+        if (!(fabs(s[0]) < INSIDE && fabs(s[1]) < INSIDE && fabs(s[2]) < INSIDE)) continue;
         double *w = shape->scratch + (size_t)count * (size_t)(parts + terms), *p = w + parts;
         weigh(dims, s, reach, w);
         if (nodes->cut.pass && !cut(nodes, member[n], x, eye, w)) continue;
