@@ -227,7 +227,7 @@ static void check_skin(const RefShellBody *body, BenchElasticFound *found)
             if (covered) bench_elastic_note(found, BENCH_ELASTIC_SKIN, off);
         }
     }
-    bench_elastic_note(found, BENCH_ELASTIC_SKIN, body->loose ? NAN : 0);
+    if (body->loose && !body->breaking) bench_elastic_note(found, BENCH_ELASTIC_SKIN, NAN);
     ref_shape_free(&shape);
 }
 
@@ -254,16 +254,6 @@ static void check_growth(const RefSheet *sheet, BenchElasticFound *found)
     ref_steps_free(&steps);
 }
 
-void bench_shell_check_broken(const RefShellBody *body, BenchElasticFound *found)
-{
-    check_shapes(body, found);
-    check_rigid(body, found);
-    check_growth(&body->sheet, found);
-    for (long s = 0; s < body->skin.count; s++)
-        for (int d = 0; d < 3; d++)
-            bench_elastic_note(found, BENCH_ELASTIC_SKIN, isfinite(body->carried[s][d]) ? 0 : NAN);
-}
-
 void bench_shell_check_state(BenchRunner *runner, BenchElasticFound *found)
 {
     RefShellBody *body = ref_shell_body(runner->engine);
@@ -288,4 +278,12 @@ void bench_shell_check_state(BenchRunner *runner, BenchElasticFound *found)
     bench_runner_prepare(runner);
     runner->type->set_state(runner->engine, before);
     sm_free_all(before, force, slope);
+}
+
+void bench_shell_check_broken(const RefShellBody *body, BenchElasticFound *found)
+{
+    check_shapes(body, found);
+    check_rigid(body, found);
+    check_skin(body, found);
+    check_growth(&body->sheet, found);
 }

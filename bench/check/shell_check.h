@@ -17,8 +17,8 @@ void bench_shell_check_body(const RefShellBody *body, BenchElasticFound *found);
 void bench_shell_check_state(BenchRunner *runner, BenchElasticFound *found);
 
 /* One that has cracks, in the end: functions where there are any sum up to 1 and their slopes to 0;
- * rigid motions cost nothing; energy does not grow without forces; and the carried points are
- * finite. */
+ * rigid motions cost nothing; energy does not grow without forces; and the carried points are where
+ * functions that are found anew have them. */
 void bench_shell_check_broken(const RefShellBody *body, BenchElasticFound *found);
 
 #endif

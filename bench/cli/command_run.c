@@ -118,8 +118,9 @@ static const char help[] =
     "The trajectory is VTKHDF with an XDMF sidecar (FILE.vtkhdf.xdmf; a script of ParaView's must "
     "open ./FILE.vtkhdf.xdmf, with a folder) for ParaView; it appears whole or not at all. The "
     "deviation printed is the largest distance of a goal position from double-precision brute "
-    "force in the last state; beyond the tolerance of 'tables' the run is INVALID (exit code 1), "
-    "its trajectory kept.\n" BENCH_EXIT_CODES;
+    "force in the last state; beyond the tolerance of 'tables', or where a shell stands still as a "
+    "crack of it could not be followed, the run is INVALID (exit code 1), its trajectory "
+    "kept.\n" BENCH_EXIT_CODES;
 
 /* Which engine's the setting is first of all. */
 static unsigned first_of(const BenchSetting *setting)
@@ -447,6 +448,8 @@ static SmCode record(const Options *options, BenchPlayback *play, const BenchMac
     if (recorder) code = bench_recording_close(recorder, error);
     if (code) return code;
     bool valid = options->mode || bench_summary_print(play, &outcome);
+    SmCounts counts;
+    bench_playback_runner(play)->type->count(bench_playback_runner(play)->engine, &counts);
     if (options->hash)
         printf("state after %ld step%s: %s (%s, %s precision)\n", outcome.steps,
                outcome.steps == 1 ? "" : "s", hash, machine->isa,
@@ -455,6 +458,11 @@ static SmCode record(const Options *options, BenchPlayback *play, const BenchMac
         printf("wrote %s and %s.xdmf: %d frame%s\n", path, path, scene->frames + 1,
                scene->frames ? "s" : "");
     if (valid) return SM_OK;
+    if (counts.stopped)
+        return sm_fail(error, SM_INVALID,
+                       "%s is INVALID: a crack could not be followed, and the body stands still "
+                       "since then; give it more nodes, or a greater strength",
+                       scene->name);
     return sm_fail(error, SM_INVALID,
                    "%s is INVALID: its last state is not that of brute force; try "
                    "--precision double or a smaller --h",

@@ -82,11 +82,16 @@ static const char help[] =
     "force, the octree's against sums over its regions' leaves (at most 5e-5 of a cell off in "
     "single, 1e-10 in double precision), linear momentum (sum m g = sum m x to 1e-6 of sum m |x - "
     "centroid|), counts, and that everything is finite. Of a meshless body its shape functions, "
-    "matrices, modes, and the frames that are timed. A row that fails has INVALID in place of its "
+    "matrices, modes, and the frames that are timed; of a shell that breaks, which is played to "
+    "its "
+    "end three times, what it is then. A row that fails has INVALID in place of its "
     "times, one that other programs on the machine left no undisturbed time has BUSY; what they "
     "took of the others is left out.\v"
     "Times are medians over the repeats; the total is timed without clocks inside the step, stages "
-    "are the shares of a run with clocks, interleaved. 'faster' is the paper's total divided by "
+    "are the shares of a run with clocks, interleaved. Of a shell that breaks they are of the "
+    "steps "
+    "that make cracks, with clocks inside; --repeats, --block and --counters mean nothing there. "
+    "'faster' is the paper's total divided by "
     "the measured one, 'speed-up' the time of the table's first lattice row by the row's; csv and "
     "json call them 'ratio' and 'speedup'.\n" BENCH_EXIT_CODES;
 

@@ -114,9 +114,6 @@ bool bench_summary_print(BenchPlayback *play, const BenchOutcome *outcome)
     const BenchEngine *engine = bench_engine(runner->type->name);
     (engine->describe ? engine->describe : print_lattice)(runner, &counts);
     if (bench_playback_changes(play)) print_changes(play, outcome);
-    if (counts.stopped)
-        printf("stopped: a crack could not be followed, and the body stands still since then: give it "
-               "more nodes, or a greater strength\n");
     bool valid = outcome->finite && !counts.stopped;
     for (int p = 0; p < play->count && outcome->finite; p++) {
         const BenchGroup *group = &play->group[p];

@@ -17,8 +17,8 @@ typedef struct {
 } BenchOutcome;
 
 /* Says on standard output what was run, how exact it ended and how long it took; false, and no
- * time, when it ended with goals beyond the tolerance, positions that are not finite, or a body that
- * stands still as a crack of it could not be followed. */
+ * time, when it ended with goals beyond the tolerance, positions that are not finite, or a body
+ * that stands still as a crack of it could not be followed. */
 bool bench_summary_print(BenchPlayback *play, const BenchOutcome *outcome);
 
 #endif

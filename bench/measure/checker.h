@@ -12,7 +12,7 @@ typedef struct BenchChecker {
     SmCode (*takes)(const BenchScene *scene, SmError *error);
 
     /* Whether what the scene makes of its body cannot be put back: then it is played (burst.h), and
-     * checked in the end. NULL: it can. */
+     * rest() is called before and state() in the end, both without a check. NULL: it can. */
     bool (*breaks)(const BenchScene *scene);
 
     /* SM_INPUT: the bodies contradict themselves, or their check would take too much memory. May be

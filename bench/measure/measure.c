@@ -200,25 +200,46 @@ static void describe(BenchPlayback *play, BenchRow *row)
     count(play, row);
 }
 
-/* A body that cannot be put back: played from its beginning to its end, and checked then. */
-static SmCode measure_burst(const BenchScene *scene, const BenchBody *body,
-                            const SmEngineType *type, const BenchMeasureParams *params,
-                            void *worst, BenchRow *row, SmError *error)
+/* Plays a body that cannot be put back round after round; `play` is left as the last one ends. */
+static SmCode play_rounds(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
+                          const BenchMeasureParams *params, void *worst, BenchBurst *burst,
+                          BenchPlayback *play, BenchRow *row, SmError *error)
 {
     enum { ROUNDS = 3 };
     const BenchChecker *checker = bench_engine(type->name)->checker;
+    for (int round = 0; round < ROUNDS; round++) {
+        if (round > 0) bench_playback_free(play);
+        SmCode code =
+            bench_playback_create(scene, body, type, params->threads, params->seed, play, error);
+        if (code) return code;
+        if (round == 0) describe(play, row);
+        if (round == 0 && checker->rest) checker->rest(NULL, play, worst, row);
+        bench_burst_round(burst, play);
+        if (params->progress)
+            bench_progress_show(params->progress, scene->name, (round + 1.0) / ROUNDS);
+    }
+    bench_burst_count(burst);
+    return SM_OK;
+}
+
+/* A body that cannot be put back: played from its beginning to its end, and checked then. */
+static SmCode measure_burst(const BenchScene *scene, const BenchBody *body,
+                            const SmEngineType *type, const BenchMeasureParams *params, void *worst,
+                            BenchRow *row, SmError *error)
+{
     BenchBurst burst;
     BenchPlayback play;
-    SmCode code = bench_burst_play(scene, body, type, params, ROUNDS, &burst, &play, error);
+    SmCode code = bench_burst_create(scene, params->threads, &burst, error);
     if (code) return code;
-    code = bench_playback_change(&play, error); /* the surface that is checked */
     name_row(scene, body, type, params, row);
-    describe(&play, row);
-    bench_burst_row(&burst, row);
-    bench_playback_hash(&play, row->state_hash);
-    checker->state(NULL, &play, worst, row);
+    code = play_rounds(scene, body, type, params, worst, &burst, &play, row, error);
+    if (!code) {
+        code = bench_playback_change(&play, error); /* the surface that is checked */
+        if (!code) bench_engine(type->name)->checker->state(NULL, &play, worst, row);
+        if (!code) bench_burst_row(&burst, row);
+        bench_playback_free(&play);
+    }
     bench_burst_free(&burst);
-    bench_playback_free(&play);
     return code;
 }
 
@@ -245,8 +266,8 @@ static SmCode measure_state(const BenchScene *scene, const BenchBody *body,
 {
     const BenchChecker *checker = bench_engine(type->name)->checker;
     Trial trial = {.before = sm_engine_stages(type)->before};
-    SmCode code = bench_playback_create(scene, body, type, params->threads, params->seed,
-                                        &trial.play, error);
+    SmCode code =
+        bench_playback_create(scene, body, type, params->threads, params->seed, &trial.play, error);
     if (code) return code;
     if (checker->accepts) code = checker->accepts(&trial.play, error);
     if (code) {

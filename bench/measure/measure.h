@@ -3,7 +3,9 @@
  * How. The scene's disturbance is applied and its `settle` steps run; that state is the start of
  * every timed segment, so that all repeats do the same work on a body in motion. The check compares
  * the goal positions there, and again where the last segment ended. Between the two it is timed
- * (step_timer.h). */
+ * (step_timer.h). A shell that breaks cannot be put back: it is played through its frames three
+ * times, with clocks, and checked at rest and in the end (burst.h); `repeats`, `block_seconds` and
+ * `events` mean nothing of it. */
 #ifndef BENCH_MEASURE_H
 #define BENCH_MEASURE_H
 
@@ -12,8 +14,8 @@
 #include "step_timer.h"
 
 /* Measures the scene's body on the engine. A failed check is no error: the row says why it is not
- * valid. Errors are those of creating the engine, and SM_INPUT where regions are too many to
- * be checked. The caller frees the row. */
+ * valid. Errors are those of creating the engine and of burst.h, and SM_INPUT where regions
+ * are too many to be checked. The caller frees the row. */
 SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
                      const BenchMeasureParams *params, BenchRow *row, SmError *error);
 

@@ -40,8 +40,8 @@ typedef struct BenchRow {
 #define OCTREE(type, member, ...) BENCH_MEMBER_##type member;
 #define VIEW(...)
 #include "row_quantities.inc"
-    double *total;                     /* [repeats] seconds a step, not instrumented */
-    double (*stage)[SM_STAGES];        /* [repeats] seconds a step, instrumented, interleaved */
+    double *total;              /* [repeats] seconds a step, not instrumented but of a burst */
+    double (*stage)[SM_STAGES]; /* [repeats] seconds a step, instrumented, interleaved */
     double (*counter)[BENCH_COUNTERS]; /* [repeats] of a step of `total`; NULL: not counted */
     BenchChangeRow change;
     BenchElasticRow elastic;

@@ -222,7 +222,8 @@ TEST(its_stage_is_a_column_beside_those_of_others)
     assert_written(rows, 2, BENCH_AS_MARKDOWN, "| - | - | - | - | - | 5.00 (62%) | 8.00 |");
     assert_written(rows, 2, BENCH_AS_LATEX, "& other & pull & total ms &");
     assert_written(rows, 2, BENCH_AS_LATEX, "& - & - & - & - & - & 5.00 (62\\%) & 8.00 &");
-    assert_written(rows, 2, BENCH_AS_CSV, ",motion_ms,skin_ms,pull_ms,parameters_s,end_nodes,whole_ms\n");
+    assert_written(rows, 2, BENCH_AS_CSV,
+                   ",motion_ms,skin_ms,pull_ms,parameters_s,end_nodes,whole_ms\n");
     assert_written(rows, 2, BENCH_AS_CSV, ",117,2,0,1,2,3,4,5,8,");
     assert_written(rows, 2, BENCH_AS_CSV, ",toy,springs,208,0,0,0,,,,,,8,");
     assert_written(rows, 2, BENCH_AS_CSV, ",,,5,,,\n");

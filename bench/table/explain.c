@@ -125,7 +125,9 @@ static void print_stages(FILE *file, const BenchRow *row)
 /* What timing stages costs; a negative share is noise. */
 static void print_instruments(FILE *file, double percent)
 {
-    if (percent >= 0.05)
+    if (isnan(percent))
+        fputs("clocks inside the steps;\n", file);
+    else if (percent >= 0.05)
         fprintf(file, "timing the stages makes a step %.1f%% longer; the total is without it;\n",
                 percent);
     else

@@ -149,7 +149,10 @@ BELOW(count_below)
 BELOW(bound_below)
 {
     (void)paper;
-    snprintf(text, BENCH_GRID_TEXT, "< %.0f", value->value);
+    if (isfinite(value->value))
+        snprintf(text, BENCH_GRID_TEXT, "< %.0f", value->value);
+    else
+        strcpy(text, "-");
 }
 
 BELOW(number_below)

@@ -35,9 +35,10 @@ void ref_shape_free(RefShape *shape)
     *shape = (RefShape){0};
 }
 
-/* Second derivatives jump at the ends of covers and half-way to them, and covers of whole numbers of
- * edges have both on integration points of larger cells. Outside begins so little before: whatever
- * is rounded how, they are outside's there. */
+/* Second derivatives of weights jump at the ends of covers and half-way to them, and covers of
+ * whole numbers of edges have both on integration points of larger cells. A weight's outer parts
+ * begin this little farther in, so that such points are always in those, however they are rounded.
+ */
 static const double INSIDE = 1 - 1e-9;
 
 double ref_mls_spline(double s, double slope[2])

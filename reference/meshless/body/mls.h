@@ -44,7 +44,7 @@ bool ref_mls_seen_from(const RefNodes *nodes, RefBasis basis, const double x[3],
                        const double eye[3], RefShape *shape);
 
 /* meshless eq. 13, the spline of the weights, by the signed s; the slopes are its first and second
- * derivative. */
+ * derivative, which jumps at a half, less a billionth: that is its outer part's. */
 double ref_mls_spline(double s, double slope[2]);
 
 /* part *= f, each a value, two slopes and the second derivatives 11, 22, 12 in a plane. */

@@ -1,6 +1,7 @@
 /* nodes.h - a meshless body's nodes and their covers (meshless sections 4.1.1 and 4.2).
  *
- * A node's cover is the open cube of half-edge `reach` around it. Bins over the box of all covers
+ * A node's cover is the open cube of half-edge `reach` around it (less a billionth
+ * of that: mls.c). Bins over the box of all covers
  * say which nodes may cover a point without a search. A shell's nodes stand in the plane of its
  * parameters, with a third coordinate of 0, and their covers are squares, which go on across seams:
  * where one does, an image of the node stands beyond the seam. */

@@ -26,7 +26,7 @@ static void add(int modes, const double f[3], const double *row, double *modal)
         modal[k] += x * row[k] + y * row[modes + k] + z * row[2 * modes + k];
 }
 
-/* Points whose sums stay in registers, six of them as of shells. */
+/* Points whose sums, three of solids and six of shells, stay in registers. */
 enum { PART = SM_VECTOR_BYTES < 32 ? LANES / 2 : LANES };
 
 /* Into sum, three rows of LANES. */

@@ -25,7 +25,8 @@ typedef struct {
     RefSkinBlock *block;
     int *node;
     float *weight; /* block by block, [room / REF_SKIN_LANES][nodes][REF_SKIN_LANES] */
-    float *lift;   /* [count] how far points are off a shell's surface along its normal; or NULL */
+    float *lift;   /* [count + REF_SKIN_LANES] how far points are off a shell's surface along its
+                      normal; or NULL */
     long nodes, node_room, weights, weight_room; /* how many there are */
     float (*near)[3]; /* scratch: displacements of a block's nodes, and how their normals turn */
 } RefSkin;
@@ -45,7 +46,8 @@ void ref_skin_build(const RefSkinCarrier *carrier, bool lifted, long count, cons
                     RefSkin *skin, long *loose);
 
 /* Blocks that `stale` says so of are weighed again, where they are if they have room. What others
- * had before is lost until it is more than what is in use; then all moves together. `loose` (may be NULL) changes with them. */
+ * had before is lost until it is more than what is in use; then all moves together. `loose` (may be
+ * NULL) changes with them. */
 void ref_skin_renew(const RefSkinCarrier *carrier,
                     bool (*stale)(const void *data, long cell, int nodes, const int *node),
                     RefSkin *skin, long *loose);

@@ -1,4 +1,4 @@
-/* Sums over modes beside themselves one after the other; test_skin.c has the points'. */
+/* Sums over modes, and over the nodes of points, beside themselves one after the other. */
 #include "frame_sums.h"
 
 #include "../../../lib/test_frame.h"
@@ -46,6 +46,50 @@ TEST(rows_are_squared)
                 double one = 0;
                 for (int r = 0; r < rows; r++) one += at[r * columns + i] * at[r * columns + j];
                 assert_true(fabs(sum[i * columns + j] - one) < 1e-13);
+            }
+    }
+}
+/* Points of a solid and of a shell in a block of any size: each from its own weights, and none
+ * beyond the last. */
+TEST(points_are_placed)
+{
+    enum { NODES = 9, POINTS = 40, LANES = REF_SKIN_LANES, ROOM = (POINTS + LANES - 1) / LANES };
+    unsigned seed = 3;
+    for (int trial = 0; trial < TRIALS; trial++) {
+        static float weight[ROOM * NODES * LANES], lift[POINTS + LANES], near[2 * NODES][3];
+        static double u[NODES][3], turned[NODES][3], rest[POINTS][3], x[POINTS + 1][3];
+        int node[NODES], points = 1 + random_int(&seed, POINTS),
+                         nodes = 1 + random_int(&seed, NODES);
+        bool lifted = trial % 2;
+        for (int n = 0; n < nodes; n++) {
+            node[n] = NODES - 1 - n;
+            for (int d = 0; d < 3; d++) u[n + NODES - nodes][d] = random_between(&seed, -1, 1);
+            for (int d = 0; d < 3; d++) turned[n + NODES - nodes][d] = random_between(&seed, -1, 1);
+        }
+        for (int p = 0; p < POINTS; p++) {
+            lift[p] = (float)random_between(&seed, -1, 1);
+            for (int d = 0; d < 3; d++) rest[p][d] = random_between(&seed, -1, 1);
+        }
+        for (int w = 0; w < ROOM * NODES * LANES; w++)
+            weight[w] = (float)random_between(&seed, -1, 1);
+        RefSkinBlock block = {.points = points, .nodes = nodes};
+        RefSkin skin = {.count = points,
+                        .rest = rest,
+                        .node = node,
+                        .weight = weight,
+                        .lift = lift,
+                        .near = near};
+        x[points][0] = 7;
+        ref_frame_sums.place(&skin, &block, (const double(*)[3])u,
+                             lifted ? (const double(*)[3])turned : NULL, x);
+        assert_true(x[points][0] == 7);
+        for (int p = 0; p < points; p++)
+            for (int d = 0; d < 3; d++) {
+                double wanted = rest[p][d];
+                for (int n = 0; n < nodes; n++)
+                    wanted += (double)weight[(p / LANES * nodes + n) * LANES + p % LANES] *
+                              (u[node[n]][d] + (lifted ? lift[p] * turned[node[n]][d] : 0));
+                assert_true(fabs(x[p][d] - wanted) < 1e-5);
             }
     }
 }

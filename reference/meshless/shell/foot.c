@@ -65,8 +65,12 @@ static double step(const double place[3][3], const double normal[3][3], const do
         off[d] = x[d] - place[0][d] - o[0] * place[1][d] - o[1] * place[2][d] - o[2] * slope[2][d];
     }
     for (int k = 0; k < 3; k++) sm_cross(slope[(k + 1) % 3], slope[(k + 2) % 3], across[k]);
-    double volume = sm_dot(slope[0], across[0]); /* Cramer's rule */
-    for (int k = 0; k < 3 && volume != 0; k++) o[k] += sm_dot(off, across[k]) / volume;
+    double volume = sm_dot(slope[0], across[0]), up = sm_dot(slope[2], slope[2]);
+    double sides = sqrt(sm_dot(slope[0], slope[0]) * sm_dot(slope[1], slope[1]) * up);
+    if (fabs(volume) > 1e-9 * sides) /* Cramer's rule */
+        for (int k = 0; k < 3; k++) o[k] += sm_dot(off, across[k]) / volume;
+    else if (up > 0) /* tangents in a line or a normal in their plane: along it alone */
+        o[2] += sm_dot(off, slope[2]) / up;
     return sqrt(sm_dot(off, off));
 }
 

@@ -31,7 +31,7 @@ typedef struct {
     double pose[3][4];    /* where it is to be, by a turn and a shift of the place at rest */
     double turn[3];       /* the pose's rotation vector */
     int lead;             /* the first hold of the same piece, maybe itself, */
-    double *reach; /* beside which what tangents gain moves another one by so much, [nodes] */
+    double *reach;     /* beside which what tangents gain moves another one by so much, [nodes] */
     double (*flux)[2]; /* the first one's, at the warp's places */
 } RefSheetHold;
 

@@ -310,3 +310,17 @@ TEST(steep_functions_do_not_lead_out)
         assert_true(second[1][0] == (far ? 0 : -4));
     }
 }
+/* Weights at the ends of covers and half-way to them: of a place an ulp farther in or out they are
+ * the same, with their second derivatives, which jump a billionth before. */
+TEST(weights_do_not_jump_by_rounding)
+{
+    const double at[2] = {0.5, 1};
+    for (int k = 0; k < 2; k++) {
+        double in = nextafter(at[k], 0), out = nextafter(at[k], 2), slope[3][2];
+        double c = ref_mls_spline(at[k], slope[0]);
+        assert_true(fabs(ref_mls_spline(in, slope[1]) - c) < 1e-15);
+        assert_true(fabs(ref_mls_spline(out, slope[2]) - c) < 1e-15);
+        for (int n = 1; n < 3; n++)
+            assert_true(fabs(slope[n][0] - slope[0][0]) < 1e-14 && slope[n][1] == slope[0][1]);
+    }
+}

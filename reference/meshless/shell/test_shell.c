@@ -228,3 +228,31 @@ TEST(a_map_that_is_not_conformal_costs_no_stiffness)
     assert_int_equal(shell.soft, shell.tree.leaves * REF_SAMPLES_PER_CELL);
     ref_shell_free(&shell);
 }
+
+/* A node whose cover ends at a place is none that covers it, however that is rounded. */
+TEST(covers_end_where_they_end)
+{
+    RefChart chart = square_chart();
+    RefQuadtree tree;
+    RefNodes nodes;
+    assert_int_equal(ref_quadtree_of(&chart, 12, 144, &tree, NULL), SM_OK);
+    ref_quadtree_nodes(&tree, 4, &nodes);
+    RefShape shape = ref_shape_create(&nodes);
+    double edge[2], middle[2], x[3] = {0};
+    ref_quadtree_cell(&tree, tree.cell + ref_quadtree_at(&tree, (double[]){0.5, 0.5}), middle,
+                      edge);
+    int count = 0;
+    for (int n = 0; n < 9; n++) {
+        for (int d = 0; d < 2; d++) {
+            int way = d ? n / 3 : n % 3;
+            x[d] = way == 0 ? middle[d] : nextafter(middle[d], way == 1 ? 0 : 1);
+        }
+        assert_true(ref_mls_at(&nodes, REF_MLS_PLANE_LINEAR, x, &shape));
+        if (n == 0) count = shape.count;
+        assert_int_equal(shape.count, count);
+    }
+    assert_int_equal(count, 9); /* covers of four edges end in the second cells' middles */
+    ref_shape_free(&shape);
+    ref_nodes_free(&nodes);
+    ref_quadtree_free(&tree);
+}

@@ -153,11 +153,11 @@ int ref_thin_element(const double (*X)[3], const RefSamples *samples, long cell,
 {
     int soft = 0, count = ref_samples_nodes(samples, cell, work->node, work->number);
     long wide = columns_for(3 * count), narrow = columns_for(count);
-    if (count > element->room) {
+    if (count > element->room || !element->node) {
         element->room = count;
         element->node = sm_realloc(element->node, (size_t)count, sizeof *element->node);
         free(element->sum);
-        element->sum = sm_alloc((size_t)(count * (count + 1) / 2), sizeof *element->sum);
+        element->sum = sm_alloc((size_t)count * ((size_t)count + 1) / 2, sizeof *element->sum);
     }
     element->count = count;
     memcpy(element->node, work->node, (size_t)count * sizeof *work->node);

@@ -14,7 +14,7 @@
 
 /* What the samples of one cell add to the matrices. */
 typedef struct {
-    int count, room;
+    int count, room;   /* room: nodes that there is memory for */
     int *node;         /* [count] rising */
     double (*sum)[10]; /* [count (count + 1) / 2] of nodes I <= J, row by row: mass without the
                           density, then the block of I along a, J along b at 1 + 3 a + b */
@@ -41,7 +41,8 @@ void ref_thin_work_free(RefThinWork *work);
 /* Sums over the samples of one cell, which is counted among the terminal ones that `samples` has,
  * of a shell of this thickness. Samples whose functions leave the surface there without an area
  * have mass alone, and those without functions nothing; returns how many both are. O(samples *
- * covers^2). What the element held before makes room; the caller frees. */
+ * covers^2). What the element held before makes room: it is zeroed before it is
+ * used first; the caller frees. */
 int ref_thin_element(const double (*X)[3], const RefSamples *samples, long cell, double thickness,
                      const RefMaterial *material, RefThinWork *work, RefElement *element);
 void ref_element_free(RefElement *element);

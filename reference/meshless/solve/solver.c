@@ -84,7 +84,7 @@ static cholmod_sparse *held(cholmod_sparse *matrix, const RefMatrices *matrices,
 static void solve_free(RefSolver *solver, int count, const double *b, double *x)
 {
     size_t size = (size_t)solver->size, columns = (size_t)count;
-    int of = count > 1;
+    int several = count > 1;
     cholmod_dense right = {.nrow = size,
                            .ncol = columns,
                            .nzmax = columns * size,
@@ -93,9 +93,9 @@ static void solve_free(RefSolver *solver, int count, const double *b, double *x)
                            .xtype = CHOLMOD_REAL,
                            .dtype = CHOLMOD_DOUBLE};
 #pragma omp teams num_teams(1) thread_limit(1)
-    cholmod_solve2(CHOLMOD_A, solver->factor, &right, NULL, &solver->result[of], NULL,
-                   &solver->work[of][0], &solver->work[of][1], &solver->common);
-    memcpy(x, solver->result[of]->x, columns * size * sizeof *x);
+    cholmod_solve2(CHOLMOD_A, solver->factor, &right, NULL, &solver->result[several], NULL,
+                   &solver->work[several][0], &solver->work[several][1], &solver->common);
+    memcpy(x, solver->result[several]->x, columns * size * sizeof *x);
 }
 
 /* What the rows' multipliers do, and the Schur complement with its independent rows. */

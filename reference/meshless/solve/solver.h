@@ -23,7 +23,8 @@ void ref_solver_destroy(RefSolver *solver);
 void ref_solver_solve(RefSolver *solver, const double *b, const double *target, double *x);
 
 /* The same for `count` right sides at once, which reads the factor once: b and x are [count][size],
- * target [count][rows]. Allocates when `count`, if above 1, is another than before. */
+ * target [count][rows]; to rounding what each alone would have. The first solve for one right side
+ * allocates, and the first for each other `count` than the last above 1. */
 void ref_solver_solve_several(RefSolver *solver, int count, const double *b, const double *target,
                               double *x);
 

@@ -1,5 +1,6 @@
 /* Natural modes and static deflections of beams, beside the theory of Timoshenko's beam. */
 #include "../../../lib/test_frame.h"
+#include "../../../lib/test_random.h"
 #include "../test_beam.h"
 #include "modes.h"
 
@@ -240,6 +241,46 @@ TEST(cantilever)
     ref_body_free(&body);
     free(load);
     free(u);
+}
+
+/* Several right sides at once, with rows and without: as each alone. */
+TEST(several_are_solved_as_one_by_one)
+{
+    needs_solver();
+    enum { MOST_SIDES = 5 };
+    static const int sides[] = {1, 2, 5, 5, 1, 3};
+    unsigned seed = 5;
+    RefBody body = beam(0.5);
+    size_t size = 3 * (size_t)body.nodes.count;
+    RefShape shape = ref_shape_create(&body.nodes);
+    RefRows rows = {0};
+    assert_true(ref_mls_at(&body.nodes, body.basis, body.nodes.position[0], &shape));
+    for (int axis = 0; axis < 3; axis++) ref_rows_displacement(&rows, &shape, axis);
+    double *b = sm_alloc(MOST_SIDES * size, sizeof *b), *x = sm_alloc(MOST_SIDES * size, sizeof *x);
+    double *one = sm_alloc(size, sizeof *one), target[3 * MOST_SIDES];
+    RefSolver *solver;
+    assert_int_equal(ref_solver_create(&body.matrices, -1e6, &rows, &solver, NULL), SM_OK);
+    for (size_t trial = 0; trial < sizeof sides / sizeof *sides; trial++) {
+        bool forced = trial != 3, aimed = trial != 2;
+        for (size_t n = 0; n < MOST_SIDES * size; n++) b[n] = random_between(&seed, -1, 1);
+        for (int r = 0; r < 3 * MOST_SIDES; r++) target[r] = random_between(&seed, -1, 1);
+        ref_solver_solve_several(solver, sides[trial], forced ? b : NULL, aimed ? target : NULL, x);
+        for (size_t s = 0; s < (size_t)sides[trial]; s++) {
+            double most = 0, off = 0;
+            ref_solver_solve(solver, forced ? b + s * size : NULL, aimed ? target + 3 * s : NULL,
+                             one);
+            for (size_t n = 0; n < size; n++) {
+                most = fmax(most, fabs(one[n]));
+                off = fmax(off, fabs(one[n] - x[s * size + n]));
+            }
+            assert_true(most > 0 && off < 1e-9 * most);
+        }
+    }
+    ref_solver_destroy(solver);
+    ref_rows_free(&rows);
+    ref_shape_free(&shape);
+    ref_body_free(&body);
+    sm_free_all(b, x, one);
 }
 
 /* A free body cannot be solved for, nor one held at a point; too many modes and none are refused.
