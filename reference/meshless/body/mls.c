@@ -94,6 +94,21 @@ static bool cut(const RefNodes *nodes, int member, const double x[3], const doub
     return w[0] > 0;
 }
 
+/* Whether a member of a plane of cylinders is in that of x, and multiplies its weight by what gets
+ * past zeros. */
+static bool gets_past(const RefNodes *nodes, int member, int home, const double x[3], double *w)
+{
+    double f[MOST_PARTS];
+    if (nodes->home[member] != home) return false;
+    if (!nodes->dimmed[member]) return true;
+    const double *node = nodes->position[nodes->owner[member]];
+    if (!ref_cylinders_pass(nodes->cylinders, x, nodes->position[member], node,
+                            nodes->reach[member], f))
+        return false;
+    ref_mls_multiply(f, w);
+    return w[0] > 0;
+}
+
 /* The nodes that cover x, and for each w's parts and the basis at the node. */
 INLINE void gather(const RefNodes *nodes, int dims, int terms, const double x[3],
                    const double eye[3], RefShape *shape)
@@ -101,6 +116,7 @@ INLINE void gather(const RefNodes *nodes, int dims, int terms, const double x[3]
     int near, count = 0, parts = parts_of(dims);
     const int *member = ref_nodes_near(nodes, x, &near);
     double scale = 0;
+    int home = dims == 2 && nodes->cylinders ? ref_cylinders_at(nodes->cylinders, x) : -1;
     for (int n = 0; n < near; n++) {
         const double *at = nodes->position[member[n]];
         double reach = nodes->reach[member[n]], s[3] = {0};
@@ -108,6 +124,7 @@ INLINE void gather(const RefNodes *nodes, int dims, int terms, const double x[3]
         if (!(fabs(s[0]) < INSIDE && fabs(s[1]) < INSIDE && fabs(s[2]) < INSIDE)) continue;
         double *w = shape->scratch + (size_t)count * (size_t)(parts + terms), *p = w + parts;
         weigh(dims, s, reach, w);
+        if (home >= 0 && !gets_past(nodes, member[n], home, x, w)) continue;
         if (nodes->cut.pass && !cut(nodes, member[n], x, eye, w)) continue;
         if (scale == 0) scale = reach;
         p[0] = 1;

@@ -9,7 +9,8 @@ enum { MOST_BINS = 1 << 21 };
 
 void ref_nodes_free(RefNodes *nodes)
 {
-    sm_free_all(nodes->position, nodes->reach, nodes->owner, nodes->start, nodes->member);
+    sm_free_all(nodes->position, nodes->reach, nodes->owner, nodes->start, nodes->member,
+                nodes->home, nodes->dimmed);
     *nodes = (RefNodes){0};
 }
 
@@ -83,29 +84,65 @@ static bool crosses(const RefNodes *nodes, long n, const RefSeam *seam)
     return true;
 }
 
+/* Appends an image of node n. */
+static void add_image(RefNodes *nodes, long n, const double at[2], long *room)
+{
+    long end = nodes->count + nodes->images++;
+    if (end == *room) {
+        *room = 2 * *room + 62;
+        nodes->owner = sm_realloc(nodes->owner, (size_t)*room, sizeof *nodes->owner);
+        nodes->reach = sm_realloc(nodes->reach, (size_t)*room, sizeof *nodes->reach);
+        nodes->position = sm_realloc(nodes->position, (size_t)*room, sizeof(double[3]));
+    }
+    nodes->owner[end] = (int)n;
+    nodes->reach[end] = nodes->reach[n];
+    memcpy(nodes->position[end], (double[3]){at[0], at[1], 0}, sizeof *nodes->position);
+}
+
+/* The images of node n in a plane of cylinders, and what is known of it and them. */
+static void place_in_cylinders(RefNodes *nodes, long n, RefCylinderImages *images, long *room,
+                               long *home_room, long *dimmed_room)
+{
+    double reach = nodes->reach[n], at[2] = {nodes->position[n][0], nodes->position[n][1]};
+    const double low[2] = {-reach, -reach}, high[2] = {reach, reach};
+    ref_cylinders_images(nodes->cylinders, at, low, high, reach / 4, images);
+    for (int k = 0; k < images->count; k++) {
+        long which = k == 0 ? n : nodes->count + nodes->images;
+        const double there[2] = {at[0] + images->shift[k][0], at[1] + images->shift[k][1]};
+        if (k > 0) add_image(nodes, n, there, room);
+        sm_make_room(nodes->home, *home_room, which + 1);
+        sm_make_room(nodes->dimmed, *dimmed_room, which + 1);
+        nodes->home[which] = images->to[k];
+        nodes->dimmed[which] = images->zero;
+    }
+}
+
 /* Puts the images behind the nodes. */
 static void place_images(RefNodes *nodes)
 {
-    long end = nodes->count, room = nodes->count;
-    if (nodes->seams == 0) return;
+    long room = nodes->count, home_room = 0, dimmed_room = 0;
+    RefCylinderImages images = {.count = 0};
+    if (nodes->seams == 0 && !nodes->cylinders) return;
+    sm_free_all(nodes->home, nodes->dimmed);
+    nodes->home = NULL;
+    nodes->dimmed = NULL;
     nodes->owner = sm_realloc(nodes->owner, (size_t)room, sizeof *nodes->owner);
+    if (nodes->cylinders) {
+        sm_make_room(nodes->home, home_room, nodes->count);
+        sm_make_room(nodes->dimmed, dimmed_room, nodes->count);
+    }
     for (long n = 0; n < nodes->count; n++) nodes->owner[n] = (int)n;
-    for (long n = 0; n < nodes->count; n++)
+    for (long n = 0; n < nodes->count; n++) {
         for (int s = 0; s < nodes->seams; s++) {
-            const RefSeam *seam = nodes->seam + s;
-            if (!crosses(nodes, n, seam)) continue;
-            if (end == room) {
-                room = 2 * room + 62;
-                nodes->owner = sm_realloc(nodes->owner, (size_t)room, sizeof *nodes->owner);
-                nodes->reach = sm_realloc(nodes->reach, (size_t)room, sizeof *nodes->reach);
-                nodes->position = sm_realloc(nodes->position, (size_t)room, sizeof(double[3]));
-            }
-            nodes->owner[end] = (int)n;
-            nodes->reach[end] = nodes->reach[n];
-            ref_seam_cross(seam, nodes->position[n], nodes->position[end]);
-            nodes->position[end++][2] = 0;
+            double at[2];
+            if (!crosses(nodes, n, nodes->seam + s)) continue;
+            ref_seam_cross(nodes->seam + s, nodes->position[n], at);
+            add_image(nodes, n, at, &room);
         }
-    nodes->images = end - nodes->count;
+        if (nodes->cylinders)
+            place_in_cylinders(nodes, n, &images, &room, &home_room, &dimmed_room);
+    }
+    ref_cylinder_images_free(&images);
 }
 
 void ref_nodes_bin(RefNodes *nodes)
@@ -180,6 +217,8 @@ RefNodes ref_nodes_copy(const RefNodes *nodes)
     copy.position = sm_copy(nodes->position, (size_t)nodes->count, sizeof *nodes->position);
     copy.reach = sm_copy(nodes->reach, (size_t)nodes->count, sizeof *nodes->reach);
     copy.owner = NULL;
+    copy.home = NULL;
+    copy.dimmed = NULL;
     copy.start = NULL;
     copy.member = NULL;
     ref_nodes_bin(&copy);

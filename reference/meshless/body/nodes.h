@@ -8,6 +8,7 @@
 #ifndef REF_NODES_H
 #define REF_NODES_H
 
+#include "cylinders.h"
 #include "octants.h"
 
 /* A place in the plane is also the place + shift, or shift - place where the plane goes on turned
@@ -42,11 +43,15 @@ typedef struct {
     RefCut cut; /* pass is NULL where covers are whole */
     int seams;
     const RefSeam *seam; /* [seams] the caller's, as long as reaches change */
-    double low[3], bin;  /* the bins' corner and edge */
-    int size[3];         /* bins a direction */
-    long *start;         /* [bins + 1] */
-    int *member;         /* [start[bins]] nodes and images whose covers touch the bin, rising */
-    int most;            /* members of the fullest bin */
+    /* Of a plane of cylinders, the caller's: images stand where these say; NULL: no such plane. */
+    const RefCylinders *cylinders;
+    int *home;          /* [count + images] in whose plane each stands, */
+    bool *dimmed;       /* [count + images] and whether zeros may be between it and a place */
+    double low[3], bin; /* the bins' corner and edge */
+    int size[3];        /* bins a direction */
+    long *start;        /* [bins + 1] */
+    int *member;        /* [start[bins]] nodes and images whose covers touch the bin, rising */
+    int most;           /* members of the fullest bin */
 } RefNodes;
 
 /* A node at the centre of every octant that is inside or cut; those whose centre is outside move

@@ -11,10 +11,13 @@
 #include "cuts.h"
 #include "harmonic.h"
 #include "locate.h"
+#include "multitorus.h"
 
 /* Rims that are shorter, in roots of the area, are closed; the second where there are too many of
  * them, or of handles. */
 static const double hole = 0.1, largest_hole = 0.5;
+/* Of a triangle in the plane, itself counted in. */
+enum { MOST_IMAGES = 32 };
 
 /* What the chart's functions know. */
 struct RefMapSurface {
@@ -22,23 +25,25 @@ struct RefMapSurface {
     double *factor;    /* [triangles.vertices] */
     RefPlaced *placed; /* [triangles.triangles] in the plane */
     RefLocator locator;
+    RefLeaves leaves; /* of a multitorus */
 };
 
 /* The plane: steps along the edges of corners, the place of every vertex, and what places are the
  * same. */
 typedef struct {
     RefMapKind kind;
-    double *step[2], *at[2]; /* [corners], [vertices] of the surface, or of it taken twice */
-    double side[2];          /* of the rectangle */
-    double shift;            /* of what is beyond the upper side */
-    double least;            /* weight */
+    double *step[2], *at[2];   /* [corners], [vertices] of the surface, or of it taken twice */
+    const double (*middle)[2]; /* [triangles] of a multitorus: the map's */
+    double side[2];            /* of the rectangle */
+    double shift;              /* of what is beyond the upper side */
+    double least;              /* weight */
     const RefTriangulation *surface; /* that `at` is of */
     RefTriangulation twice;          /* where that is it */
 } Plane;
 
 const char *ref_map_kind_name(RefMapKind kind)
 {
-    static const char *const name[] = {"disk", "cap", "annulus", "torus", "sphere"};
+    static const char *const name[] = {"disk", "cap", "annulus", "torus", "sphere", "multitorus"};
     return name[kind];
 }
 
@@ -47,6 +52,7 @@ void ref_surface_map_free(RefSurfaceMap *map)
     if (map->surface) {
         ref_triangulation_free(&map->surface->triangles);
         ref_locator_free(&map->surface->locator);
+        ref_leaves_free(&map->surface->leaves);
         sm_free_all(map->surface->factor, map->surface->placed);
     }
     sm_free_all(map->surface, map->theta, map->factor);
@@ -59,7 +65,7 @@ static bool reduce(const Plane *plane, double theta[2])
 {
     bool folded = plane->kind == REF_MAP_SPHERE || plane->kind == REF_MAP_CAP;
     double height = folded ? 2 * plane->side[1] : plane->side[1];
-    if (plane->kind == REF_MAP_DISK) return false;
+    if (plane->kind == REF_MAP_DISK || plane->kind == REF_MAP_MULTITORUS) return false;
     if (plane->kind == REF_MAP_TORUS || plane->kind == REF_MAP_SPHERE) {
         double rows = floor(theta[1] / height);
         theta[0] -= rows * plane->shift;
@@ -218,12 +224,17 @@ static SmCode map_half(const RefTriangulation *twice, double area, int tip, Plan
     return code;
 }
 
-/* A triangle of the surface in the plane, its first corner in the rectangle. */
+/* A triangle of the surface in the plane, its first corner in the rectangle, or its middle in one
+ * of several. */
 static RefPlaced place_triangle(const Plane *plane, int triangle)
 {
     RefPlaced placed = {.triangle = triangle};
     int first = 3 * triangle, vertex = plane->surface->vertex[first];
-    for (int d = 0; d < 2; d++) placed.corner[0][d] = plane->at[d][vertex];
+    for (int d = 0; d < 2; d++)
+        placed.corner[0][d] = plane->middle
+                                  ? plane->middle[triangle][d] -
+                                        (plane->step[d][first] - plane->step[d][first + 2]) / 3
+                                  : plane->at[d][vertex];
     double sign = reduce(plane, placed.corner[0]) ? -1 : 1;
     for (int d = 0; d < 2; d++) {
         placed.corner[1][d] = placed.corner[0][d] + sign * plane->step[d][first];
@@ -308,6 +319,68 @@ RefMapTriangle ref_surface_map_triangle(const RefSurfaceMap *map, long triangle)
     return one;
 }
 
+static void middle_of(const RefPlaced *placed, double middle[2])
+{
+    for (int d = 0; d < 2; d++)
+        middle[d] = (placed->corner[0][d] + placed->corner[1][d] + placed->corner[2][d]) / 3;
+}
+
+/* The part of a triangle that is in a rectangle, a polygon: its corners' mean; false where there is
+ * none. */
+static bool part_in(const RefCylinder *in, const RefPlaced *placed, double mean[2])
+{
+    double corner[8][2], kept[8][2];
+    int count = 3;
+    memcpy(corner, placed->corner, sizeof placed->corner);
+    for (int side = 0; side < 4; side++) { /* Sutherland and Hodgman 1974 */
+        int d = side / 2, left = 0;
+        double at = side % 2 ? in->high[d] : in->low[d], sign = side % 2 ? -1 : 1;
+        for (int n = 0; n < count; n++) {
+            const double *a = corner[n], *b = corner[(n + 1) % count];
+            double off[2] = {sign * (a[d] - at), sign * (b[d] - at)};
+            if (off[0] > 0) memcpy(kept[left++], a, sizeof *kept);
+            if ((off[0] > 0) == (off[1] > 0)) continue;
+            for (int e = 0; e < 2; e++)
+                kept[left][e] = a[e] + off[0] / (off[0] - off[1]) * (b[e] - a[e]);
+            left++;
+        }
+        count = left;
+        memcpy(corner, kept, sizeof corner);
+    }
+    mean[0] = mean[1] = 0;
+    for (int n = 0; n < count; n++)
+        for (int d = 0; d < 2; d++) mean[d] += corner[n][d] / count;
+    return count > 0;
+}
+
+/* A triangle's images in cylinders, appended: those that a line within it leads to. */
+static long add_cylinder_images(const RefCylinders *cylinders, const RefPlaced *placed,
+                                RefCylinderImages *images, RefPlaced *image)
+{
+    double middle[2], low[2], high[2], size = 0;
+    long count = 0;
+    middle_of(placed, middle);
+    for (int d = 0; d < 2; d++) {
+        const double way[3] = {placed->corner[0][d] - middle[d], placed->corner[1][d] - middle[d],
+                               placed->corner[2][d] - middle[d]};
+        low[d] = fmin(way[0], fmin(way[1], way[2]));
+        high[d] = fmax(way[0], fmax(way[1], way[2]));
+        size = fmax(size, high[d] - low[d]);
+    }
+    ref_cylinders_images(cylinders, middle, low, high, 0, images);
+    for (int k = 0; k < images->count && count < MOST_IMAGES; k++) {
+        RefPlaced one = *placed;
+        double mean[2], way[2], end[2] = {middle[0], middle[1]};
+        for (int i = 0; i < 3; i++)
+            for (int d = 0; d < 2; d++) one.corner[i][d] += images->shift[k][d];
+        if (!part_in(cylinders->cylinder + images->to[k], &one, mean)) continue;
+        for (int d = 0; d < 2; d++) way[d] = mean[d] - images->shift[k][d] - middle[d];
+        ref_cylinders_walk(cylinders, end, way);
+        if (k == 0 || hypot(end[0] - mean[0], end[1] - mean[1]) < 1e-3 * size) image[count++] = one;
+    }
+    return count;
+}
+
 /* A triangle's images that reach into the rectangle, appended. */
 static long add_images(const RefChart *chart, const RefPlaced *placed, RefPlaced *image)
 {
@@ -372,6 +445,7 @@ static void make_chart(const Plane *plane, RefSurfaceMap *map)
                         .place = chart_place,
                         .mean = chart_mean,
                         .data = map->surface};
+    if (plane->middle) chart->cylinders = &map->surface->leaves.cylinders;
     if (plane->kind == REF_MAP_ANNULUS) ref_chart_wrap(chart, true, false);
     if (plane->kind == REF_MAP_TORUS) ref_chart_skew(chart, plane->shift);
     double upper = plane->shift / 2;
@@ -419,7 +493,7 @@ static double nearest_in(const double *const corner[3], const double x[3], doubl
 
 /* Tries the triangles around a vertex for the place that is nearest to x. */
 static void try_around(const struct RefMapSurface *on, int vertex, const double x[3], double *best,
-                       double theta[2])
+                       const RefPlaced **in, double theta[2])
 {
     const RefTriangulation *surface = &on->triangles;
     int first = surface->corner[vertex], at = first;
@@ -431,12 +505,28 @@ static void try_around(const struct RefMapSurface *on, int vertex, const double 
         double off = nearest_in(corner, x, weight);
         if (off < *best) {
             *best = off;
+            *in = placed;
             for (int d = 0; d < 2; d++)
                 theta[d] = weight[0] * placed->corner[0][d] + weight[1] * placed->corner[1][d] +
                            weight[2] * placed->corner[2][d];
         }
         at = ref_corner_left(surface, at);
     } while (at >= 0 && at != first);
+}
+
+/* Moves a place of a triangle, which may be beyond a seam, into the rectangle. */
+static void enter(const RefSurfaceMap *map, const RefPlaced *in, double theta[2])
+{
+    if (map->chart.cylinders) {
+        double middle[2], way[2];
+        middle_of(in, middle);
+        for (int d = 0; d < 2; d++) way[d] = theta[d] - middle[d];
+        ref_cylinders_walk(map->chart.cylinders, middle, way);
+        memcpy(theta, middle, sizeof middle);
+        return;
+    }
+    ref_chart_enter(&map->chart, theta);
+    for (int d = 0; d < 2; d++) theta[d] = fmin(fmax(theta[d], 0), map->chart.high[d]);
 }
 
 void ref_surface_map_feet(const RefSurfaceMap *map, long count, const double (*x)[3],
@@ -451,12 +541,12 @@ void ref_surface_map_feet(const RefSurfaceMap *map, long count, const double (*x
     for (long p = 0; p < count; p++) {
         long near[AROUND];
         double distance[AROUND], best = INFINITY;
+        const RefPlaced *in = map->surface->placed;
         int found = ref_cloud_nearest(&cloud, x[p], AROUND, near, distance);
         theta[p][0] = theta[p][1] = 0;
         for (int n = 0; n < found; n++)
-            try_around(map->surface, (int)near[n], x[p], &best, theta[p]);
-        ref_chart_enter(&map->chart, theta[p]);
-        for (int d = 0; d < 2; d++) theta[p][d] = fmin(fmax(theta[p][d], 0), map->chart.high[d]);
+            try_around(map->surface, (int)near[n], x[p], &best, &in, theta[p]);
+        enter(map, in, theta[p]);
     }
     ref_cloud_free(&cloud);
     free(none);
@@ -506,6 +596,7 @@ static void finish(const Plane *plane, RefSurfaceMap *map)
     size_t count = (size_t)on->triangles.triangles;
     RefPlaced *placed = on->placed = sm_alloc(count, sizeof *placed), *image = NULL;
     long images = 0, room = 0;
+    RefCylinderImages across = {.count = 0};
     make_chart(plane, map);
     for (size_t t = 0; t < count; t++) placed[t] = place_triangle(plane, (int)t);
     find_factors(placed, on);
@@ -513,9 +604,12 @@ static void finish(const Plane *plane, RefSurfaceMap *map)
     for (size_t t = 0; t < count; t++) {
         double cotangent[3];
         placed[t].value = ref_triangle_shape(on->triangles.length + 3 * t, cotangent) / 2;
-        sm_make_room(image, room, images + REF_MOST_SEAMS + 1);
-        images += add_images(&map->chart, placed + t, image + images);
+        sm_make_room(image, room, images + MOST_IMAGES);
+        images += plane->middle ? add_cylinder_images(map->chart.cylinders, placed + t, &across,
+                                                      image + images)
+                                : add_images(&map->chart, placed + t, image + images);
     }
+    ref_cylinder_images_free(&across);
     ref_locator_create((int)images, image, &on->locator);
     carry(plane, map);
 }
@@ -543,10 +637,10 @@ static SmCode unfold(const RefTriangulation *surface, const double *weight, Plan
 
 static bool has_map(const RefTriangulation *surface, RefMapKind *kind)
 {
-    static const RefMapKind closed[] = {REF_MAP_SPHERE, REF_MAP_TORUS};
+    static const RefMapKind closed[] = {REF_MAP_SPHERE, REF_MAP_TORUS, REF_MAP_MULTITORUS};
     static const RefMapKind open[] = {REF_MAP_DISK, REF_MAP_ANNULUS};
-    if (surface->rims == 0 && surface->genus < 2)
-        *kind = closed[surface->genus];
+    if (surface->rims == 0)
+        *kind = closed[surface->genus < 2 ? surface->genus : 2];
     else if (surface->genus == 0 && surface->rims < 3)
         *kind = open[surface->rims - 1];
     else
@@ -560,11 +654,30 @@ static void plane_free(Plane *plane)
     ref_triangulation_free(&plane->twice);
 }
 
+/* The rectangles of a closed surface with handles, from left to right. */
+static SmCode map_multitorus(const char *name, struct RefMapSurface *on, Plane *plane,
+                             SmError *error)
+{
+    RefTriangulation *surface = &on->triangles;
+    SmCode code = ref_multitorus_unfold(surface, name, plane->step, &on->leaves, error);
+    if (code != SM_OK) return code;
+    const RefCylinders *cylinders = &on->leaves.cylinders;
+    plane->middle = (const double(*)[2])on->leaves.middle;
+    for (int d = 0; d < 2; d++) {
+        plane->at[d] = sm_alloc((size_t)surface->vertices, sizeof *plane->at[d]);
+        for (long v = 0; v < surface->vertices; v++) plane->at[d][v] = on->leaves.at[v][d];
+        for (int c = 0; c < cylinders->count; c++)
+            plane->side[d] = fmax(plane->side[d], cylinders->cylinder[c].high[d]);
+    }
+    return SM_OK;
+}
+
 /* With weights that are not below `least`. */
-static SmCode find_plane(const RefTriangulation *surface, double least, RefMapKind kind,
+static SmCode find_plane(const char *name, double least, RefMapKind kind, struct RefMapSurface *on,
                          Plane *plane, SmError *error)
 {
     SmCode code = SM_OK;
+    const RefTriangulation *surface = &on->triangles;
     double *weight = ref_harmonic_weights(surface, least);
     *plane = (Plane){.surface = surface, .kind = kind, .least = least};
     switch (kind) {
@@ -578,6 +691,9 @@ static SmCode find_plane(const RefTriangulation *surface, double least, RefMapKi
         break;
     case REF_MAP_TORUS:
         code = map_torus(surface, weight, ref_triangulation_area(surface), 0, plane, error);
+        break;
+    case REF_MAP_MULTITORUS:
+        code = map_multitorus(name, on, plane, error);
         break;
     }
     free(weight);
@@ -603,13 +719,12 @@ static SmCode map_any(const char *name, RefSurfaceMap *map, SmError *error)
         return sm_fail(
             error, SM_INPUT,
             "%s: a surface of genus %d with %d rim%s: a shell is a sheet with one rim, a "
-            "tube with two, or a closed surface with one handle at most; close or cut "
-            "what is more",
+            "tube with two, or a closed surface; close or cut what is more",
             name, surface->genus, surface->rims, surface->rims == 1 ? "" : "s");
-    SmCode code = find_plane(surface, 0, kind, &plane, error);
+    SmCode code = find_plane(name, 0, kind, map->surface, &plane, error);
     if (code == SM_OK && turns_over(&plane, surface->triangles)) {
         plane_free(&plane);
-        code = find_plane(surface, 1e-4, kind, &plane, error);
+        code = find_plane(name, 1e-4, kind, map->surface, &plane, error);
     }
     map->kind = plane.kind;
     if (code == SM_OK) finish(&plane, map);
@@ -617,20 +732,30 @@ static SmCode map_any(const char *name, RefSurfaceMap *map, SmError *error)
     return code;
 }
 
-/* Cuts handles that are too many for a map, as long as they are slender or their tunnels narrow;
- * returns how many. */
-static int cut_handles(RefTriangulation *surface)
+/* Cuts handles, of which a closed surface may keep one, as long as they are slender or their
+ * tunnels narrow; returns how many. */
+static int cut_handles(RefTriangulation *surface, double limit)
 {
     int cut = 0;
     while (surface->genus > (surface->rims == 0 ? 1 : 0)) {
         int *loop = sm_alloc((size_t)surface->vertices, sizeof *loop);
-        long count = ref_cuts_handle(surface, largest_hole, loop);
+        long count = ref_cuts_handle(surface, limit, loop);
         if (count) ref_triangulation_cut(surface, count, loop);
         free(loop);
         if (count == 0) break;
         cut++;
     }
     return cut;
+}
+
+static SmCode map_mended(const char *name, RefSurfaceMap *map, SmError *error)
+{
+    RefTriangulation *surface = &map->surface->triangles;
+    ref_triangulation_delaunay(surface);
+    ref_triangulation_split(surface);
+    SmCode code = map_any(name, map, error);
+    map->triangles = surface->triangles;
+    return code;
 }
 
 /* Maps what a mesh has; `share` and `edges` say what is dropped and closed. */
@@ -644,15 +769,17 @@ static SmCode map_mesh(const SmMesh *mesh, const char *name, double share, long 
     if (code == SM_OK) {
         map->dropped = mesh->triangle_count - surface->triangles;
         map->closed = ref_triangulation_close(surface, hole, edges, largest_hole);
-        map->handles = cut_handles(surface);
+        map->handles = cut_handles(surface, surface->rims ? largest_hole : hole);
         if (surface->rims > (surface->genus == 0 ? 2 : 0))
             map->closed += ref_triangulation_close(surface, largest_hole, 0, 0);
         if (surface->rims == 1) /* which needs four corners */
             map->closed += ref_triangulation_close(surface, 0, 3, INFINITY);
-        ref_triangulation_delaunay(surface);
-        ref_triangulation_split(surface);
-        map->triangles = surface->triangles;
-        code = map_any(name, map, error);
+        code = map_mended(name, map, error);
+        if (code == SM_INPUT && surface->genus > 1) {
+            int cut = cut_handles(surface, largest_hole);
+            map->handles += cut;
+            if (cut) code = map_mended(name, map, error);
+        }
     }
     if (code == SM_OK && 100 * map->flips > map->triangles)
         code = sm_fail(error, SM_INPUT,

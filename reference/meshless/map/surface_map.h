@@ -24,7 +24,8 @@ typedef enum {
     REF_MAP_CAP,
     REF_MAP_ANNULUS,
     REF_MAP_TORUS,
-    REF_MAP_SPHERE
+    REF_MAP_SPHERE,
+    REF_MAP_MULTITORUS
 } RefMapKind;
 
 typedef struct {

@@ -574,6 +574,64 @@ static void halve_edge(RefTriangulation *surface, int ab)
     join(surface, ba, mb);
 }
 
+/* Room for triangles and one vertex in a closed surface. */
+static void widen_closed(RefTriangulation *surface, long triangles)
+{
+    size_t corners = 3 * (size_t)(surface->triangles + triangles);
+    widen(surface, triangles, 1);
+    surface->rim = sm_realloc(surface->rim, corners, sizeof *surface->rim);
+    for (size_t c = 3 * (size_t)surface->triangles; c < corners; c++) surface->rim[c] = -1;
+}
+
+int ref_triangulation_halve(RefTriangulation *surface, int corner)
+{
+    int first = (int)(3 * surface->triangles);
+    widen_closed(surface, 2);
+    halve_edge(surface, corner);
+    return first;
+}
+
+int ref_triangulation_insert(RefTriangulation *surface, int triangle, const double weight[3])
+{
+    int a = 3 * triangle, first = (int)(3 * surface->triangles), m = (int)surface->vertices++;
+    double square[3], spread = 0, away[3];
+    widen_closed(surface, 2);
+    for (int i = 0; i < 3; i++) { /* of the edge from corner i */
+        square[i] = surface->length[a + i] * surface->length[a + i];
+        spread += weight[i] * weight[(i + 1) % 3] * square[i];
+    }
+    memset(surface->position[m], 0, sizeof *surface->position);
+    for (int i = 0; i < 3; i++) {
+        away[i] = sqrt(fmax(weight[(i + 1) % 3] * square[i] +
+                                weight[(i + 2) % 3] * square[(i + 2) % 3] - spread,
+                            0));
+        for (int d = 0; d < 3; d++)
+            surface->position[m][d] += weight[i] * surface->position[surface->vertex[a + i]][d];
+    }
+    surface->source[m] = -1;
+    surface->triangles += 2;
+    for (int k = 1; k >= 0; k--) { /* b c m and c a m */
+        int one = first + 3 * k, from = a + 1 + k;
+        surface->vertex[one] = surface->vertex[from];
+        surface->vertex[one + 1] = surface->vertex[a + (2 + k) % 3];
+        surface->length[one] = surface->length[from];
+        surface->length[one + 1] = away[(2 + k) % 3];
+        surface->length[one + 2] = away[1 + k];
+        join(surface, one, surface->twin[from]);
+        surface->corner[surface->vertex[one]] = one;
+    }
+    for (int one = first; one < first + 6; one += 3) surface->vertex[one + 2] = m;
+    surface->vertex[a + 2] = m;
+    surface->length[a + 1] = away[1];
+    surface->length[a + 2] = away[0];
+    surface->corner[surface->vertex[a]] = a;
+    surface->corner[m] = a + 2;
+    join(surface, a + 1, first + 2);
+    join(surface, first + 1, first + 5);
+    join(surface, first + 4, a + 2);
+    return first;
+}
+
 /* Whether a corner's edge lies inside and joins two vertices of one rim. */
 static bool is_chord(const RefTriangulation *surface, const int *rim, int corner)
 {
@@ -597,6 +655,20 @@ long ref_triangulation_split(RefTriangulation *surface)
     sm_free_all(rim, surface->rim);
     count_rims(surface);
     return count;
+}
+
+RefTriangulation ref_triangulation_copy(const RefTriangulation *surface)
+{
+    RefTriangulation copy = *surface;
+    size_t corners = 3 * (size_t)surface->triangles, count = (size_t)surface->vertices;
+    copy.vertex = sm_copy(surface->vertex, corners, sizeof *copy.vertex);
+    copy.twin = sm_copy(surface->twin, corners, sizeof *copy.twin);
+    copy.length = sm_copy(surface->length, corners, sizeof *copy.length);
+    copy.rim = sm_copy(surface->rim, corners, sizeof *copy.rim);
+    copy.source = sm_copy(surface->source, count, sizeof *copy.source);
+    copy.corner = sm_copy(surface->corner, count, sizeof *copy.corner);
+    copy.position = sm_copy(surface->position, count, sizeof *copy.position);
+    return copy;
 }
 
 RefTriangulation ref_triangulation_twice(const RefTriangulation *surface, const bool *cut)

@@ -81,10 +81,22 @@ void ref_triangulation_delaunay(RefTriangulation *surface);
  * straight rim; returns how many. */
 long ref_triangulation_split(RefTriangulation *surface);
 
+/* Puts a vertex in the middle of an inner edge a-b of a closed surface, of triangles a b c and
+ * b a d, c's corner behind b's: they become a m c and b m d, with the corners that they had, and
+ * two triangles are added, m b c and m a d. Returns the first new corner. */
+int ref_triangulation_halve(RefTriangulation *surface, int corner);
+
+/* Puts a vertex into a triangle a b c of a closed surface, where its corners have these weights,
+ * whose sum is 1: it becomes a b m, and b c m and c a m are added. Returns the first new corner. */
+int ref_triangulation_insert(RefTriangulation *surface, int triangle, const double weight[3]);
+
 /* The surface taken twice, cut open along lines of edges and each sheet glued to the
  * other there: `cut` is true for both corners of such edges, [3 * triangles]. Corner c is c of the
  * first sheet and 3 * triangles + c of the second. The caller frees. */
 RefTriangulation ref_triangulation_twice(const RefTriangulation *surface, const bool *cut);
+
+/* The caller frees. */
+RefTriangulation ref_triangulation_copy(const RefTriangulation *surface);
 
 /* Twice the area of a triangle, and the cotangents of its angles. A triangle without area counts as
  * one of 1e-10 times its longest edge squared. */

@@ -60,6 +60,18 @@ bool ref_chart_enter(const RefChart *chart, double theta[2])
 bool ref_chart_go_on(const RefChart *chart, double theta[2], bool *turned)
 {
     *turned = false;
+    if (chart->cylinders) {
+        const RefCylinder *in =
+            chart->cylinders->cylinder + ref_cylinders_at(chart->cylinders, theta);
+        double way[2];
+        for (int d = 0; d < 2; d++) {
+            double inside = fmin(fmax(theta[d], in->low[d]), in->high[d]);
+            way[d] = theta[d] - inside;
+            theta[d] = inside;
+        }
+        ref_cylinders_walk(chart->cylinders, theta, way);
+        return true;
+    }
     if (holds(chart->low, chart->high, theta)) return true;
     for (int s = 0; s < chart->seams; s++) {
         const RefSeam *seam = chart->seam + s;

@@ -8,7 +8,8 @@ enum { REF_MOST_SEAMS = 8 };
 
 /* A rectangle of the plane of parameters (theta1, theta2) and the surface over it. Its sides are
  * rims of the surface, or seams, behind which the parameters go on in the rectangle but for a
- * constant, or but for a constant and half a turn. */
+ * constant, or but for a constant and half a turn. A closed surface of genus 2 and more has several
+ * rectangles, joined along intervals of their sides (body/cylinders.h). */
 typedef struct {
     double low[2], high[2];
     int seams;
@@ -20,6 +21,9 @@ typedef struct {
      * NULL: the largest of a grid of places there is taken instead. */
     double (*mean)(const void *data, const double low[2], const double high[2]);
     const void *data; /* for all */
+    /* Several rectangles, of which low..high is the box, and what they are joined by; without
+     * seams then. The caller's; NULL: one rectangle. */
+    const RefCylinders *cylinders;
 } RefChart;
 
 /* Joins the rectangle's opposite sides along the axes that are given: the chart of a cylinder has

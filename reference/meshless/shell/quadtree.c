@@ -5,32 +5,36 @@
 
 void ref_quadtree_free(RefQuadtree *tree)
 {
-    free(tree->cell);
+    sm_free_all(tree->cell, tree->grid);
     *tree = (RefQuadtree){0};
 }
 
 void ref_quadtree_cell(const RefQuadtree *tree, const RefCell *cell, double middle[2],
                        double edge[2])
 {
+    const RefRootGrid *grid = tree->grid + cell->grid;
     for (int d = 0; d < 2; d++) {
-        edge[d] = tree->unit[d] * cell->size;
-        middle[d] = tree->chart->low[d] + tree->unit[d] * (cell->corner[d] + 0.5 * cell->size);
+        edge[d] = grid->unit[d] * cell->size;
+        middle[d] = grid->low[d] + grid->unit[d] * (cell->corner[d] + 0.5 * cell->size);
     }
 }
 
 double ref_quadtree_edge(const RefQuadtree *tree, const RefCell *cell)
 {
-    return cell->size * fmax(tree->unit[0], tree->unit[1]);
+    const RefRootGrid *grid = tree->grid + cell->grid;
+    return cell->size * fmax(grid->unit[0], grid->unit[1]);
 }
 
 int ref_quadtree_at(const RefQuadtree *tree, const double theta[2])
 {
     int place[2], at = 0, whole = 1 << REF_QUADTREE_LEVELS;
+    const RefCylinders *cylinders = tree->chart->cylinders;
+    const RefRootGrid *grid = tree->grid + (cylinders ? ref_cylinders_at(cylinders, theta) : 0);
     for (int d = 0; d < 2; d++) {
-        double cells = floor((theta[d] - tree->chart->low[d]) / tree->unit[d]);
-        place[d] = (int)fmin(fmax(cells, 0), (double)tree->roots[d] * whole - 1);
+        double cells = floor((theta[d] - grid->low[d]) / grid->unit[d]);
+        place[d] = (int)fmin(fmax(cells, 0), (double)grid->roots[d] * whole - 1);
     }
-    at = place[1] / whole * tree->roots[0] + place[0] / whole;
+    at = grid->first + place[1] / whole * grid->roots[0] + place[0] / whole;
     while (tree->cell[at].child >= 0) {
         int half = tree->cell[at].size / 2, which = 0;
         for (int d = 0; d < 2; d++)
@@ -51,7 +55,8 @@ static void split(RefQuadtree *tree, long at)
         tree->cell[tree->count++] = (RefCell){
             {parent.corner[0] + half * (which & 1), parent.corner[1] + half * (which >> 1)},
             half,
-            -1};
+            -1,
+            parent.grid};
 }
 
 /* The longer edge on the surface. */
@@ -87,21 +92,30 @@ static bool refine(RefQuadtree *tree, double threshold)
     return true;
 }
 
+/* Whether a cell is so much larger than another one that it has to be split. */
+static bool exceeds(const RefQuadtree *tree, const RefCell *cell, const RefCell *fine)
+{
+    if (cell->grid == fine->grid) return cell->size > 2 * fine->size;
+    return cell->size > 1 &&
+           ref_quadtree_edge(tree, cell) > (2 + 1e-6) * ref_quadtree_edge(tree, fine);
+}
+
 /* Splits what lies across side `side` of a cell that is two levels finer. Where the plane goes on
  * with a shift, cells' corners do not meet: both ends of the side are looked at. */
 static bool relieve(RefQuadtree *tree, RefCell fine, int side)
 {
     double middle[2], edge[2];
+    const double *unit = tree->grid[fine.grid].unit;
     int axis = side / 2;
     bool changed = false;
     ref_quadtree_cell(tree, &fine, middle, edge);
-    middle[axis] += (side % 2 ? 0.5 : -0.5) * (edge[axis] + tree->unit[axis]);
+    middle[axis] += (side % 2 ? 0.5 : -0.5) * (edge[axis] + unit[axis]);
     for (int end = -1; end <= 1; end += 2) {
         double beyond[2] = {middle[0], middle[1]};
-        beyond[!axis] += end * 0.5 * (edge[!axis] - tree->unit[!axis]);
+        beyond[!axis] += end * 0.5 * (edge[!axis] - unit[!axis]);
         if (!ref_chart_enter(tree->chart, beyond)) continue;
         int at = ref_quadtree_at(tree, beyond);
-        if (tree->cell[at].size <= 2 * fine.size) continue;
+        if (!exceeds(tree, tree->cell + at, &fine)) continue;
         split(tree, at);
         changed = true;
     }
@@ -128,32 +142,59 @@ bool ref_quadtree_split(RefQuadtree *tree, long cell)
     return true;
 }
 
+/* The sides of a chart's rectangle number n. */
+static void sides_of(const RefChart *chart, int n, double low[2], double side[2])
+{
+    const RefCylinder *in = chart->cylinders ? chart->cylinders->cylinder + n : NULL;
+    for (int d = 0; d < 2; d++) {
+        low[d] = in ? in->low[d] : chart->low[d];
+        side[d] = (in ? in->high[d] : chart->high[d]) - low[d];
+    }
+}
+
+static int rectangles_of(const RefChart *chart)
+{
+    return chart->cylinders ? chart->cylinders->count : 1;
+}
+
 static void plant(const RefChart *chart, int across, RefQuadtree *tree)
 {
-    double side[2], shorter;
     int whole = 1 << REF_QUADTREE_LEVELS;
-    for (int d = 0; d < 2; d++) side[d] = chart->high[d] - chart->low[d];
-    shorter = fmin(side[0], side[1]);
-    *tree = (RefQuadtree){.chart = chart};
-    for (int d = 0; d < 2; d++) {
-        tree->roots[d] = (int)fmax(rint(across * side[d] / shorter), 1);
-        tree->unit[d] = side[d] / tree->roots[d] / whole;
+    *tree = (RefQuadtree){.chart = chart, .grids = rectangles_of(chart)};
+    tree->grid = sm_alloc((size_t)tree->grids, sizeof *tree->grid);
+    for (int g = 0; g < tree->grids; g++) {
+        RefRootGrid *grid = tree->grid + g;
+        double side[2];
+        sides_of(chart, g, grid->low, side);
+        double shorter = fmin(side[0], side[1]);
+        for (int d = 0; d < 2; d++) {
+            grid->roots[d] = (int)fmax(rint(across * side[d] / shorter), 1);
+            grid->unit[d] = side[d] / grid->roots[d] / whole;
+        }
+        grid->first = (int)tree->count;
+        tree->count += (long)grid->roots[0] * grid->roots[1];
     }
-    tree->count = tree->leaves = tree->room = (long)tree->roots[0] * tree->roots[1];
+    tree->leaves = tree->room = tree->count;
     tree->cell = sm_alloc((size_t)tree->count, sizeof *tree->cell);
-    for (int n = 0; n < tree->count; n++)
-        tree->cell[n] =
-            (RefCell){{n % tree->roots[0] * whole, n / tree->roots[0] * whole}, whole, -1};
+    for (int g = 0; g < tree->grids; g++) {
+        const RefRootGrid *grid = tree->grid + g;
+        for (int n = 0; n < grid->roots[0] * grid->roots[1]; n++)
+            tree->cell[grid->first + n] =
+                (RefCell){{n % grid->roots[0] * whole, n / grid->roots[0] * whole}, whole, -1, g};
+    }
 }
 
 static SmCode check(const RefChart *chart, int across, SmError *error)
 {
-    double side[2] = {chart->high[0] - chart->low[0], chart->high[1] - chart->low[1]};
-    double cells = across * (double)across * fmax(side[0] / side[1], side[1] / side[0]);
-    if (!(side[0] > 0 && side[1] > 0 && across > 0))
-        return sm_fail(error, SM_USAGE,
-                       "a chart of %g by %g with %d cells across: give it an area and a cell",
-                       side[0], side[1], across);
+    double cells = 0, low[2], side[2];
+    for (int n = 0; n < rectangles_of(chart); n++) {
+        sides_of(chart, n, low, side);
+        if (!(side[0] > 0 && side[1] > 0 && across > 0))
+            return sm_fail(error, SM_USAGE,
+                           "a chart of %g by %g with %d cells across: give it an area and a cell",
+                           side[0], side[1], across);
+        cells += across * (double)across * fmax(side[0] / side[1], side[1] / side[0]);
+    }
     if (cells < REF_MOST_CELLS) return SM_OK;
     return sm_fail(error, SM_INPUT,
                    "a chart of %g by %g with %d cells across needs more than %d: give it fewer",
@@ -228,7 +269,7 @@ void ref_quadtree_add_nodes(const RefQuadtree *tree, const RefCell *cell, double
         bool rim = true;
         for (int d = 0; d < 2; d++) {
             double beyond[2] = {middle[0], middle[1]};
-            beyond[d] += 0.5 * step[d] * (edge[d] + tree->unit[d]);
+            beyond[d] += 0.5 * step[d] * (edge[d] + tree->grid[cell->grid].unit[d]);
             theta[d] = middle[d] + 0.5 * step[d] * edge[d];
             rim = rim && (step[d] == 0 || !ref_chart_enter(tree->chart, beyond));
         }
@@ -239,7 +280,10 @@ void ref_quadtree_add_nodes(const RefQuadtree *tree, const RefCell *cell, double
 void ref_quadtree_nodes(const RefQuadtree *tree, double eta, RefNodes *nodes)
 {
     size_t most = REF_MOST_CELL_NODES * (size_t)tree->leaves;
-    *nodes = (RefNodes){.plane = true, .seams = tree->chart->seams, .seam = tree->chart->seam};
+    *nodes = (RefNodes){.plane = true,
+                        .seams = tree->chart->seams,
+                        .seam = tree->chart->seam,
+                        .cylinders = tree->chart->cylinders};
     nodes->position = sm_alloc(most, sizeof *nodes->position);
     nodes->reach = sm_alloc(most, sizeof *nodes->reach);
     for (long c = 0; c < tree->count; c++)

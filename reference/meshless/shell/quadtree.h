@@ -1,7 +1,8 @@
 /* quadtree.h - the balanced quadtree of a shell's parameters (meshless section 4.2).
  *
- * Its roots are a grid over the chart's rectangle, as close to squares as whole numbers allow, so
- * that no cell is cut by a rim and seams lie on cells' edges. Positions count in finest cells. */
+ * Its roots are a grid over each of the chart's rectangles, as close to squares as whole numbers
+ * allow, so that no cell is cut by a rim and seams lie on cells' edges. Positions count in finest
+ * cells of the grid. */
 #ifndef REF_QUADTREE_H
 #define REF_QUADTREE_H
 
@@ -11,15 +12,23 @@
 typedef struct {
     int corner[2], size; /* finest cells */
     int child;           /* first of four, or -1: terminal */
+    int grid;
 } RefCell;
+
+/* The roots of a rectangle. */
+typedef struct {
+    double low[2], unit[2]; /* its corner; edges of a finest cell */
+    int roots[2], first;    /* the first one's cell */
+} RefRootGrid;
 
 typedef struct {
     const RefChart *chart; /* the caller's */
-    int roots[2];
-    double unit[2];     /* edges of a finest cell */
+    int grids;
+    RefRootGrid *grid;  /* [grids] one, or one for each cylinder of the chart */
     long count, leaves; /* cells, terminal ones */
     long room;
-    RefCell *cell; /* [count] the roots, row by row, then children behind their parents */
+    RefCell *cell; /* [count] the roots, grid by grid and row by row, then children behind their
+                      parents */
 } RefQuadtree;
 
 enum { REF_QUADTREE_LEVELS = 14, REF_MOST_CELLS = 1 << 20 };
@@ -27,9 +36,10 @@ enum { REF_QUADTREE_LEVELS = 14, REF_MOST_CELLS = 1 << 20 };
 /* Splits cells while L times their longer edge is above `threshold`, L the chart's mean in the cell
  * (the largest of a five by five grid where it has none), and then until cells that share a piece
  * of an edge, also across seams, differ by one level at most. The mean makes nodes more even than
- * the largest: a spread of 21% beside 27% on a bunny. `across`: roots along the shorter side. The
- * caller frees. Errors: SM_USAGE, a rectangle without area or `across` below 1; SM_INPUT, more than
- * REF_MOST_CELLS cells. */
+ * the largest: a spread of 21% beside 27% on a bunny. `across`: roots along a rectangle's shorter
+ * side. Across joints of cylinders, whose cells are of other sizes, none is more than twice as long
+ * as another. The caller frees. Errors: SM_USAGE, a rectangle without area or `across` below 1;
+ * SM_INPUT, more than REF_MOST_CELLS cells. */
 SmCode ref_quadtree_build(const RefChart *chart, int across, double threshold, RefQuadtree *tree,
                           SmError *error);
 

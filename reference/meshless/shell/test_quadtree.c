@@ -9,7 +9,7 @@ static int size_across(const RefQuadtree *tree, const RefCell *cell, int side, d
     double theta[2], edge[2];
     ref_quadtree_cell(tree, cell, theta, edge);
     int axis = side / 2;
-    theta[axis] += (side % 2 ? 0.5 : -0.5) * (edge[axis] + tree->unit[axis]);
+    theta[axis] += (side % 2 ? 0.5 : -0.5) * (edge[axis] + tree->grid[0].unit[axis]);
     theta[!axis] += (share - 0.5) * edge[!axis];
     if (!ref_chart_enter(tree->chart, theta)) return 0;
     return tree->cell[ref_quadtree_at(tree, theta)].size;

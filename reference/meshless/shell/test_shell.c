@@ -132,7 +132,7 @@ TEST(moving_the_seam_changes_no_frequency)
         RefShell shell;
         RefModes modes;
         RefQuadtree tree = quadtree_of(&chart, options.across, options.nodes);
-        double shift = moved * 2 * waves.side[0] / tree.roots[0];
+        double shift = moved * 2 * waves.side[0] / tree.grid[0].roots[0];
         ref_quadtree_free(&tree);
         chart.low[0] += shift;
         chart.high[0] += shift;

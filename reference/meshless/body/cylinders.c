@@ -1,0 +1,312 @@
+#include "cylinders.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../../lib/error.h"
+#include "mls.h"
+
+/* How near to a zero lines are that it dims, in the node's reach. */
+static const double ZERO_REACH = 0.25;
+/* Of a reach, within which a line's end is the node. */
+static const double SAME = 1e-6;
+enum { MOST_JOINTS_PASSED = 1000, MOST_ZEROS = 16 };
+
+void ref_cylinders_free(RefCylinders *cylinders)
+{
+    sm_free_all(cylinders->cylinder, cylinders->joint);
+    *cylinders = (RefCylinders){.count = 0};
+}
+
+void ref_cylinder_images_free(RefCylinderImages *images)
+{
+    sm_free_all(images->to, images->shift);
+    *images = (RefCylinderImages){.count = 0};
+}
+
+static double width_of(const RefCylinder *cylinder)
+{
+    return cylinder->high[0] - cylinder->low[0];
+}
+
+int ref_cylinders_at(const RefCylinders *cylinders, const double theta[2])
+{
+    int at = 0;
+    while (at + 1 < cylinders->count &&
+           theta[0] > (cylinders->cylinder[at].high[0] + cylinders->cylinder[at + 1].low[0]) / 2)
+        at++;
+    return at;
+}
+
+/* Moves a place along the first axis into a rectangle. */
+static void wrap(const RefCylinder *cylinder, double theta[2])
+{
+    double width = width_of(cylinder);
+    theta[0] -= width * floor((theta[0] - cylinder->low[0]) / width);
+    if (theta[0] >= cylinder->high[0]) theta[0] = cylinder->low[0];
+}
+
+/* The joint of a cylinder's side at a place along it. */
+static const RefJoint *joint_at(const RefCylinders *cylinders, int at, bool up, double place)
+{
+    const RefJoint *nearest = NULL;
+    double width = width_of(cylinders->cylinder + at), least = INFINITY;
+    for (int j = 0; j < cylinders->joints; j++) {
+        const RefJoint *joint = cylinders->joint + j;
+        if (joint->from != at || joint->up != up) continue;
+        double on = place - joint->begin;
+        on -= width * floor(on / width);
+        if (on <= joint->end - joint->begin) return joint;
+        double off = fmin(on - (joint->end - joint->begin), width - on);
+        if (off >= least) continue;
+        least = off;
+        nearest = joint;
+    }
+    return nearest;
+}
+
+/* Goes on to the next cylinder's side, and shortens the way by that; -1 where the way ends before:
+ * theta is moved to there. `moved` gets what was added beside the way. */
+static int hop(const RefCylinders *cylinders, int at, double theta[2], double way[2],
+               double moved[2])
+{
+    const RefCylinder *cylinder = cylinders->cylinder + at;
+    double before[2] = {theta[0], theta[1]}, end = theta[1] + way[1], share = 1;
+    const RefJoint *joint = NULL;
+    if (end > cylinder->high[1] || end < cylinder->low[1]) {
+        bool up = end > cylinder->high[1];
+        double side = up ? cylinder->high[1] : cylinder->low[1];
+        share = fmin(fmax((side - theta[1]) / way[1], 0), 1);
+        joint = joint_at(cylinders, at, up, theta[0] + share * way[0]);
+    }
+    for (int d = 0; d < 2; d++) theta[d] += share * way[d];
+    if (joint) {
+        const RefCylinder *next = cylinders->cylinder + joint->to;
+        double on = theta[0] - joint->begin, width = width_of(cylinder);
+        on -= width * floor(on / width);
+        if (on > joint->end - joint->begin) /* by rounding */
+            on = on < width - (on - (joint->end - joint->begin)) ? joint->end - joint->begin : 0;
+        theta[0] = joint->begin + on + joint->shift[0];
+        theta[1] = joint->up ? next->low[1] : next->high[1];
+        wrap(next, theta);
+    } else {
+        wrap(cylinder, theta);
+    }
+    for (int d = 0; d < 2; d++) {
+        moved[d] = theta[d] - before[d] - share * way[d];
+        way[d] *= 1 - share;
+    }
+    return joint ? joint->to : -1;
+}
+
+void ref_cylinders_walk(const RefCylinders *cylinders, double theta[2], const double way[2])
+{
+    double left[2] = {way[0], way[1]}, moved[2];
+    int at = ref_cylinders_at(cylinders, theta);
+    for (int n = 0; n < MOST_JOINTS_PASSED && at >= 0; n++)
+        at = hop(cylinders, at, theta, left, moved);
+}
+
+/* ---- images */
+
+/* Whether the box about `at` and an interval of a side reach into one another. */
+static bool touches(const RefCylinder *cylinder, double low, double high)
+{
+    double tiny = 1e-9 * width_of(cylinder);
+    return fmin(high, cylinder->high[0]) - fmax(low, cylinder->low[0]) > tiny;
+}
+
+static void add_image(RefCylinderImages *images, int to, const double shift[2], double tiny)
+{
+    for (int n = 0; n < images->count; n++)
+        if (images->to[n] == to && fabs(images->shift[n][0] - shift[0]) < tiny &&
+            fabs(images->shift[n][1] - shift[1]) < tiny)
+            return;
+    if (images->count == images->room) {
+        images->room = 2 * images->room + 16;
+        images->to = sm_realloc(images->to, (size_t)images->room, sizeof *images->to);
+        images->shift = sm_realloc(images->shift, (size_t)images->room, sizeof *images->shift);
+    }
+    images->to[images->count] = to;
+    memcpy(images->shift[images->count++], shift, 2 * sizeof *shift);
+}
+
+/* What is across a joint, of which the piece that is in the rectangle begins `around` farther. */
+static void look_across(const RefCylinders *cylinders, const RefJoint *joint, double around,
+                        const double shift[2], const double low[2], const double high[2],
+                        RefCylinderImages *images)
+{
+    const RefCylinder *from = cylinders->cylinder + joint->from;
+    const RefCylinder *next = cylinders->cylinder + joint->to;
+    double begin = fmax(joint->begin + around, fmax(from->low[0], low[0]));
+    double end = fmin(joint->end + around, fmin(from->high[0], high[0]));
+    double width = width_of(next), tiny = 1e-9 * width;
+    if (end - begin <= tiny) return;
+    double on = joint->shift[0] - around, first = floor((begin + on - next->low[0]) / width);
+    for (double k = first; next->low[0] + k * width < end + on; k++) {
+        if (!touches(next, begin + on - k * width, end + on - k * width)) continue;
+        const double there[2] = {shift[0] + on - k * width, shift[1] + joint->shift[1]};
+        add_image(images, joint->to, there, tiny);
+    }
+}
+
+/* Adds what is next to an image's cylinder in a box of its plane, and notes zeros there. */
+static void look_around(const RefCylinders *cylinders, int at, const double shift[2],
+                        const double low[2], const double high[2], double enlarged,
+                        RefCylinderImages *images)
+{
+    const RefCylinder *cylinder = cylinders->cylinder + at;
+    double width = width_of(cylinder), tiny = 1e-9 * width;
+    for (int k = -1; k <= 1; k += 2) {
+        if (!touches(cylinder, low[0] - k * width, high[0] - k * width)) continue;
+        const double there[2] = {shift[0] - k * width, shift[1]};
+        add_image(images, at, there, tiny);
+    }
+    for (int j = 0; j < cylinders->joints; j++) {
+        const RefJoint *joint = cylinders->joint + j;
+        if (joint->from != at) continue;
+        double side = joint->up ? cylinder->high[1] : cylinder->low[1];
+        bool near = side > low[1] - enlarged && side < high[1] + enlarged;
+        for (int k = -1; k <= 1; k++) {
+            double zero = joint->begin + k * width;
+            images->zero |= near && zero > low[0] - enlarged && zero < high[0] + enlarged;
+        }
+        bool across = joint->up ? high[1] > side + tiny : low[1] < side - tiny;
+        for (int k = -1; k <= 0 && across; k++)
+            look_across(cylinders, joint, k * width, shift, low, high, images);
+    }
+}
+
+void ref_cylinders_images(const RefCylinders *cylinders, const double theta[2], const double low[2],
+                          const double high[2], double enlarged, RefCylinderImages *images)
+{
+    images->count = 0;
+    images->zero = false;
+    add_image(images, ref_cylinders_at(cylinders, theta), (double[2]){0, 0}, 0);
+    for (int n = 0; n < images->count && n < MOST_JOINTS_PASSED; n++) {
+        double shift[2], from[2], to[2];
+        const RefCylinder *cylinder = cylinders->cylinder + images->to[n];
+        memcpy(shift, images->shift[n], sizeof shift);
+        for (int d = 0; d < 2; d++) {
+            from[d] = theta[d] + shift[d] + low[d];
+            to[d] = theta[d] + shift[d] + high[d];
+        }
+        if (to[1] + enlarged <= cylinder->low[1] || from[1] - enlarged >= cylinder->high[1])
+            continue;
+        look_around(cylinders, images->to[n], shift, from, to, enlarged, images);
+    }
+}
+
+/* ---- what passes zeros */
+
+/* A line in the plane of a cylinder, and the zeros that it has passed, as seen from x. */
+typedef struct {
+    double x[2], from[2]; /* now: both move as the line goes on */
+    double away[2];       /* by which they have moved */
+    int count;
+    double zero[MOST_ZEROS][2]; /* less what they have moved */
+} Line;
+
+/* 1 - c(distance / b) of a zero, with its derivatives by x. The square of the distance is that to
+ * the line where the foot is on it, else to one of its ends. */
+static void dim(const double x[2], const double from[2], const double zero[2], double b,
+                double part[6])
+{
+    double v[2], u[2], slope[2], square_k[2] = {0}, square_kl[3] = {0}, square;
+    for (int d = 0; d < 2; d++) {
+        v[d] = x[d] - from[d];
+        u[d] = zero[d] - from[d];
+    }
+    double A = u[0] * v[0] + u[1] * v[1], B = v[0] * v[0] + v[1] * v[1];
+    square = u[0] * u[0] + u[1] * u[1];
+    if (A >= B) { /* nearest to x */
+        square += B - 2 * A;
+        for (int k = 0; k < 2; k++) square_k[k] = 2 * (v[k] - u[k]);
+        square_kl[0] = square_kl[1] = 2;
+    } else if (A > 0) {
+        double t = A / B;
+        square -= A * t;
+        for (int k = 0; k < 2; k++) square_k[k] = 2 * t * (t * v[k] - u[k]);
+        for (int m = 0; m < 3; m++) {
+            int k = m == 1, l = m != 0;
+            square_kl[m] =
+                (-2 * u[k] * u[l] + 4 * t * (u[k] * v[l] + u[l] * v[k]) - 8 * t * t * v[k] * v[l]) /
+                    B +
+                (k == l ? 2 * t * t : 0);
+        }
+    }
+    memset(part, 0, 6 * sizeof *part);
+    part[0] = 1;
+    double s = sqrt(fmax(square, 0)) / b;
+    if (!(s < 1)) return;
+    part[0] = 1 - ref_mls_spline(s, slope);
+    /* by S = s^2: half the slope over s, and its own slope; in s < 1/2 these are 2 and 0 */
+    double f_S = s < 0.5 ? 2 : -slope[0] / (2 * s);
+    double f_SS = s < 0.5 ? 0 : (-slope[1] - 2 * f_S) / (4 * s * s);
+    for (int k = 0; k < 2; k++) part[1 + k] = f_S * square_k[k] / (b * b);
+    for (int m = 0; m < 3; m++) {
+        int k = m == 1, l = m != 0;
+        part[3 + m] =
+            f_S * square_kl[m] / (b * b) + f_SS * square_k[k] * square_k[l] / (b * b * b * b);
+    }
+}
+
+/* Whether a zero was not passed before. */
+static bool is_new(Line *line, const double zero[2], double tiny)
+{
+    double place[2] = {zero[0] - line->away[0], zero[1] - line->away[1]};
+    for (int n = 0; n < line->count; n++)
+        if (fabs(line->zero[n][0] - place[0]) < tiny && fabs(line->zero[n][1] - place[1]) < tiny)
+            return false;
+    if (line->count < MOST_ZEROS) memcpy(line->zero[line->count++], place, sizeof place);
+    return true;
+}
+
+/* The zeros on a cylinder's sides. */
+static void pass_cylinder(const RefCylinders *cylinders, int at, double b, Line *line,
+                          double part[6])
+{
+    const RefCylinder *cylinder = cylinders->cylinder + at;
+    double width = width_of(cylinder), low[2], high[2];
+    for (int d = 0; d < 2; d++) {
+        low[d] = fmin(line->x[d], line->from[d]) - b;
+        high[d] = fmax(line->x[d], line->from[d]) + b;
+    }
+    for (int j = 0; j < cylinders->joints; j++) {
+        const RefJoint *joint = cylinders->joint + j;
+        double side = joint->up ? cylinder->high[1] : cylinder->low[1];
+        if (joint->from != at || side <= low[1] || side >= high[1]) continue;
+        double first = ceil((low[0] - joint->begin) / width);
+        for (double k = first; joint->begin + k * width < high[0]; k++) {
+            const double zero[2] = {joint->begin + k * width, side};
+            double f[6];
+            if (!is_new(line, zero, SAME * b)) continue;
+            dim(line->x, line->from, zero, b, f);
+            ref_mls_multiply(f, part);
+        }
+    }
+}
+
+bool ref_cylinders_pass(const RefCylinders *cylinders, const double x[2], const double from[2],
+                        const double node[2], double reach, double part[6])
+{
+    static const double whole[6] = {1};
+    Line line = {.x = {x[0], x[1]}, .from = {from[0], from[1]}};
+    double theta[2] = {x[0], x[1]}, way[2] = {from[0] - x[0], from[1] - x[1]}, moved[2];
+    memcpy(part, whole, sizeof whole);
+    int at = ref_cylinders_at(cylinders, x), end = at;
+    for (int n = 0; n < MOST_JOINTS_PASSED && at >= 0; n++) {
+        pass_cylinder(cylinders, at, ZERO_REACH * reach, &line, part);
+        end = at;
+        at = hop(cylinders, at, theta, way, moved);
+        for (int d = 0; d < 2; d++) {
+            line.x[d] += moved[d];
+            line.from[d] += moved[d];
+            line.away[d] += moved[d];
+        }
+    }
+    double off = fabs(theta[0] - node[0]), width = width_of(cylinders->cylinder + end);
+    off = fmin(off, fabs(off - width));
+    return part[0] > 0 && off < SAME * reach && fabs(theta[1] - node[1]) < SAME * reach;
+}

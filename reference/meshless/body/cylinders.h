@@ -1,0 +1,67 @@
+/* cylinders.h - the plane of a holomorphic one-form whose horizontal leaves are closed: cylinders
+ * that are joined along intervals of their sides (Strebel 1984; Zorich 2006, sections 4.1 and 5.3).
+ *
+ * Leaves through the form's zeros cut a closed surface of genus g into 3 g - 3 cylinders at most.
+ * In the plane of the form's integral each is a rectangle whose left and right sides are one line.
+ * An interval of its upper side between zeros goes on, moved by a constant, as one of some
+ * cylinder's lower side. Around a zero the plane has two whole turns, so that what is beyond it
+ * differs by the side on which a straight line passes. */
+#ifndef REF_CYLINDERS_H
+#define REF_CYLINDERS_H
+
+#include <stdbool.h>
+
+typedef struct {
+    double low[2], high[2];
+} RefCylinder;
+
+/* An interval of a side. Both its ends are zeros of the form. */
+typedef struct {
+    int from, to;      /* cylinders */
+    bool up;           /* of the upper side of `from`, the lower one of `to`; or the other way */
+    double begin, end; /* begin in low[0]..high[0]; an end beyond goes on at the left */
+    double shift[2];   /* what is to be added to a place beyond to have it in `to`, or so many
+                          widths beside */
+} RefJoint;
+
+typedef struct {
+    int count, joints;
+    RefCylinder *cylinder; /* [count] from left to right in the plane, apart from one another */
+    RefJoint *joint;       /* [joints] every interval from both sides */
+} RefCylinders;
+
+void ref_cylinders_free(RefCylinders *cylinders);
+
+/* The cylinder of a place of its rectangle, or near that. */
+int ref_cylinders_at(const RefCylinders *cylinders, const double theta[2]);
+
+/* Goes straight from a place of a rectangle: theta becomes the place where that ends, in its
+ * rectangle. A way that meets a zero passes it on one side. O(joints passed). */
+void ref_cylinders_walk(const RefCylinders *cylinders, double theta[2], const double way[2]);
+
+/* Where a box around a place of a rectangle reaches: shifts by which the place gets into the planes
+ * of cylinders there, the first one zero. Where the box holds a zero, there may be others among
+ * them that no straight line leads to. */
+typedef struct {
+    int count, room, *to;
+    double (*shift)[2];
+    bool zero; /* the box, enlarged by so much to all sides, has one */
+} RefCylinderImages;
+
+/* `low` and `high` say how far the box reaches from the place, low being negative; images of an
+ * earlier call are overwritten, and freed by the caller. O(joints * images). */
+void ref_cylinders_images(const RefCylinders *cylinders, const double theta[2], const double low[2],
+                          const double high[2], double enlarged, RefCylinderImages *images);
+void ref_cylinder_images_free(RefCylinderImages *images);
+
+/* What of a cover gets from a node, whose image `from` is in the plane of x's cylinder, straight to
+ * x: false where the line from x to the image does not lead to the node itself, whose place is
+ * `node`. Otherwise value, slopes and second derivatives by x of the product over zeros that are
+ * nearer than b to the line of 1 - c(distance / b), c the weights' spline and b a quarter of the
+ * node's reach: weights fall to 0 towards the line behind a zero, on both of its sides, so that
+ * functions are as smooth there as elsewhere. At a zero itself they are not: derivatives grow as
+ * the distance falls. */
+bool ref_cylinders_pass(const RefCylinders *cylinders, const double x[2], const double from[2],
+                        const double node[2], double reach, double part[6]);
+
+#endif

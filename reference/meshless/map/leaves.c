@@ -1,0 +1,404 @@
+#include "leaves.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Of the root of the plane's area: lines that are as near as this meet; and gaps between
+ * rectangles, of the longest side. */
+static const double NEAR = 1e-9, GAP = 0.25;
+/* By this share of the way from a triangle's middle a vertex is before a zero. */
+static const double SHORT = 1e-6;
+
+/* A leaf of a triangle: part of the arc from one zero to another, in the triangle's own plane,
+ * whose origin is the first corner. */
+typedef struct {
+    int triangle, arc, next; /* next: of the same triangle, or -1 */
+    double y, from, to;      /* from the left to the right */
+    double along;            /* of the arc before it */
+} Piece;
+
+/* A critical leaf from a zero to the right. Above it the region's lower side goes on along the arc
+ * `above`, below it the region's upper side along the arc `below`. */
+typedef struct {
+    int begin, end; /* corners of the zeros, in whose angles the arc leaves and arrives */
+    int above, below;
+    double length;
+    int over, under; /* the cylinders */
+    double place[2]; /* where it begins along the side of that above, and of that below */
+} Arc;
+
+typedef struct {
+    const RefTriangulation *surface;
+    double *const *step;
+    double near; /* lines that meet are nearer than this */
+    const bool *is_zero;
+    Arc *arc; /* [arcs] */
+    Piece *piece;
+    int arcs, *first; /* [triangles] a triangle's first piece, or -1 */
+    long pieces, room;
+} Trace;
+
+void ref_leaves_free(RefLeaves *leaves)
+{
+    ref_cylinders_free(&leaves->cylinders);
+    sm_free_all(leaves->middle, leaves->at);
+    *leaves = (RefLeaves){.middle = NULL};
+}
+
+/* A triangle's corners in its own plane. */
+static void corners_of(const Trace *trace, int triangle, double corner[3][2])
+{
+    for (int d = 0; d < 2; d++) {
+        corner[0][d] = 0;
+        corner[1][d] = trace->step[d][3 * triangle];
+        corner[2][d] = -trace->step[d][3 * triangle + 2];
+    }
+}
+
+/* Whether the direction to the right lies in the angle at a corner, or along the edge on its right
+ * side. */
+static bool leads_right(const Trace *trace, int corner)
+{
+    return trace->step[1][corner] <= 0 && trace->step[1][ref_corner_last(corner)] < 0;
+}
+
+static void add_piece(Trace *trace, int triangle, int arc, const double from[2], double to,
+                      double along)
+{
+    sm_make_room(trace->piece, trace->room, trace->pieces + 1);
+    trace->piece[trace->pieces] = (Piece){.triangle = triangle,
+                                          .arc = arc,
+                                          .next = trace->first[triangle],
+                                          .y = from[1],
+                                          .from = from[0],
+                                          .to = to,
+                                          .along = along};
+    trace->first[triangle] = (int)trace->pieces++;
+}
+
+/* Moves a place of a triangle's plane into that of the one across a corner's edge. */
+static void cross_edge(const Trace *trace, int corner, double at[2])
+{
+    int twin = trace->surface->twin[corner];
+    double here[3][2], there[3][2];
+    corners_of(trace, corner / 3, here);
+    corners_of(trace, twin / 3, there);
+    for (int d = 0; d < 2; d++) at[d] += there[ref_corner_next(twin) % 3][d] - here[corner % 3][d];
+}
+
+/* Follows an arc from where it begins to the next zero; false where it meets none. */
+static bool follow(Trace *trace, int which)
+{
+    Arc *arc = trace->arc + which;
+    const RefTriangulation *surface = trace->surface;
+    int corner = ref_corner_next(arc->begin); /* whose edge it leaves by */
+    double at[2], place[3][2], along = 0;
+    corners_of(trace, corner / 3, place);
+    memcpy(at, place[arc->begin % 3], sizeof at);
+    for (long n = 0; n < 10 * surface->triangles; n++) {
+        const double *a = place[corner % 3], *b = place[ref_corner_next(corner) % 3];
+        double share = fmin(fmax((at[1] - a[1]) / (b[1] - a[1]), 0), 1);
+        double out = a[0] + share * (b[0] - a[0]);
+        add_piece(trace, corner / 3, which, at, out, along);
+        along += out - at[0];
+        at[0] = out;
+        cross_edge(trace, corner, at);
+        int twin = surface->twin[corner], tip = ref_corner_last(twin);
+        corners_of(trace, twin / 3, place);
+        const double *end = place[tip % 3];
+        if (trace->is_zero[surface->vertex[tip]] && fabs(end[1] - at[1]) < trace->near) {
+            add_piece(trace, twin / 3, which, at, end[0], along);
+            arc->length = along + end[0] - at[0];
+            arc->end = tip;
+            return true;
+        }
+        /* twin runs from above the leaf to below it; the tip is on the right of it */
+        corner = end[1] > at[1] ? ref_corner_last(tip) : tip;
+    }
+    return false;
+}
+
+/* The arc that begins at the first angle, going right or left about a zero, that has one. */
+static int arc_beside(const Trace *trace, int corner, bool left)
+{
+    const RefTriangulation *surface = trace->surface;
+    int at = corner;
+    do {
+        for (int n = 0; n < trace->arcs; n++)
+            if (trace->arc[n].begin == at) return n;
+        at = left ? ref_corner_left(surface, at) : ref_corner_right(surface, at);
+    } while (at != corner);
+    return -1;
+}
+
+/* The critical leaves. */
+static bool find_arcs(Trace *trace, int zeros, const int *zero)
+{
+    const RefTriangulation *surface = trace->surface;
+    trace->arcs = 0;
+    for (int z = 0; z < zeros; z++) {
+        int first = surface->corner[zero[z]], at = first;
+        do {
+            if (leads_right(trace, at)) {
+                if (trace->arcs == 2 * zeros) return false;
+                trace->arc[trace->arcs++] = (Arc){.begin = at, .over = -1, .under = -1};
+            }
+            at = ref_corner_left(surface, at);
+        } while (at != first);
+    }
+    if (trace->arcs != 2 * zeros) return false;
+    for (int n = 0; n < trace->arcs; n++)
+        if (!follow(trace, n)) return false;
+    for (int n = 0; n < trace->arcs; n++) {
+        trace->arc[n].above = arc_beside(trace, trace->arc[n].end, false);
+        trace->arc[n].below = arc_beside(trace, trace->arc[n].end, true);
+    }
+    return true;
+}
+
+/* Goes straight up from a place in a triangle to the next leaf above; writes the height and how far
+ * along its arc that is, and returns the arc, or -1. */
+static int climb(const Trace *trace, int triangle, const double from[2], double *height,
+                 double *along)
+{
+    double at[2] = {from[0], from[1]}, place[3][2], floor_of = from[1] + trace->near;
+    *height = 0;
+    for (long n = 0; n < 10 * trace->surface->triangles; n++) {
+        double top = INFINITY;
+        int found = -1, out = -1;
+        for (int p = trace->first[triangle]; p >= 0; p = trace->piece[p].next) {
+            const Piece *piece = trace->piece + p;
+            if (piece->from > at[0] || piece->to < at[0] || piece->y <= floor_of || piece->y >= top)
+                continue;
+            top = piece->y;
+            found = p;
+        }
+        if (found >= 0) {
+            *height += top - at[1];
+            *along = trace->piece[found].along + at[0] - trace->piece[found].from;
+            return trace->piece[found].arc;
+        }
+        corners_of(trace, triangle, place);
+        for (int i = 0; i < 3; i++) /* edges above run to the left */
+            if (place[i][0] >= at[0] && place[(i + 1) % 3][0] < at[0]) out = i;
+        if (out < 0) return -1;
+        const double *a = place[out], *b = place[(out + 1) % 3];
+        double up = a[1] + (at[0] - a[0]) / (b[0] - a[0]) * (b[1] - a[1]);
+        *height += up - at[1];
+        at[1] = up;
+        cross_edge(trace, 3 * triangle + out, at);
+        triangle = trace->surface->twin[3 * triangle + out] / 3;
+        floor_of = at[1] - trace->near;
+    }
+    return -1;
+}
+
+/* The piece of an arc that holds its middle. */
+static const Piece *middle_of(const Trace *trace, int arc)
+{
+    for (long p = 0; p < trace->pieces; p++) {
+        const Piece *piece = trace->piece + p;
+        double on = trace->arc[arc].length / 2 - piece->along;
+        if (piece->arc == arc && on >= 0 && on <= piece->to - piece->from) return piece;
+    }
+    return NULL;
+}
+
+static bool start_at(const Trace *trace, int arc, int *triangle, double at[2])
+{
+    const Piece *piece = middle_of(trace, arc);
+    if (!piece) return false;
+    *triangle = piece->triangle;
+    at[0] = piece->from + trace->arc[arc].length / 2 - piece->along;
+    at[1] = piece->y;
+    return true;
+}
+
+/* The cylinder above an arc, which begins there; its number is `which`. */
+static bool find_cylinder(Trace *trace, int arc, int which, RefCylinder *cylinder)
+{
+    double at[2], along, height, width = 0, upper = 0;
+    int triangle;
+    if (!start_at(trace, arc, &triangle, at)) return false;
+    for (int n = arc; trace->arc[n].over < 0; n = trace->arc[n].above) {
+        trace->arc[n].over = which;
+        trace->arc[n].place[0] = width;
+        width += trace->arc[n].length;
+        if (trace->arc[n].above < 0) return false;
+    }
+    int top = climb(trace, triangle, at, &height, &along);
+    if (top < 0) return false;
+    double begin = trace->arc[arc].length / 2 - along;
+    for (int n = top; trace->arc[n].under < 0; n = trace->arc[n].below) {
+        trace->arc[n].under = which;
+        trace->arc[n].place[1] = begin + upper;
+        upper += trace->arc[n].length;
+        if (trace->arc[n].below < 0) return false;
+    }
+    *cylinder = (RefCylinder){.high = {width, height}};
+    return height > 0 && fabs(upper - width) < 1e3 * trace->near;
+}
+
+/* Both sides of every arc, after the rectangles have moved to where they stay. */
+static void join_cylinders(const Trace *trace, RefCylinders *cylinders)
+{
+    cylinders->joint = sm_alloc(2 * (size_t)trace->arcs, sizeof *cylinders->joint);
+    for (int n = 0; n < trace->arcs; n++) {
+        const Arc *arc = trace->arc + n;
+        double begin[2]; /* above, below */
+        for (int k = 0; k < 2; k++) {
+            const RefCylinder *in = cylinders->cylinder + (k ? arc->under : arc->over);
+            double width = in->high[0] - in->low[0], place = arc->place[k];
+            begin[k] = in->low[0] + place - width * floor(place / width);
+        }
+        double up = cylinders->cylinder[arc->over].low[1] - cylinders->cylinder[arc->under].high[1];
+        cylinders->joint[cylinders->joints++] = (RefJoint){.from = arc->under,
+                                                           .to = arc->over,
+                                                           .up = true,
+                                                           .begin = begin[1],
+                                                           .end = begin[1] + arc->length,
+                                                           .shift = {begin[0] - begin[1], up}};
+        cylinders->joint[cylinders->joints++] = (RefJoint){.from = arc->over,
+                                                           .to = arc->under,
+                                                           .begin = begin[0],
+                                                           .end = begin[0] + arc->length,
+                                                           .shift = {begin[1] - begin[0], -up}};
+    }
+}
+
+static bool find_cylinders(Trace *trace, RefCylinders *cylinders)
+{
+    double longest = 0, at = 0;
+    cylinders->cylinder = sm_alloc((size_t)trace->arcs, sizeof *cylinders->cylinder);
+    for (int n = 0; n < trace->arcs; n++) {
+        if (trace->arc[n].over >= 0) continue;
+        RefCylinder *cylinder = cylinders->cylinder + cylinders->count;
+        if (!find_cylinder(trace, n, cylinders->count++, cylinder)) return false;
+        longest = fmax(longest, fmax(cylinder->high[0], cylinder->high[1]));
+    }
+    for (int n = 0; n < trace->arcs; n++)
+        if (trace->arc[n].under < 0) return false;
+    for (int c = 0; c < cylinders->count; c++) {
+        RefCylinder *cylinder = cylinders->cylinder + c;
+        cylinder->low[0] = at;
+        cylinder->high[0] += at;
+        at = cylinder->high[0] + GAP * longest;
+    }
+    join_cylinders(trace, cylinders);
+    return true;
+}
+
+static void middle_in(const Trace *trace, int triangle, double middle[2])
+{
+    double place[3][2];
+    corners_of(trace, triangle, place);
+    for (int d = 0; d < 2; d++) middle[d] = (place[0][d] + place[1][d] + place[2][d]) / 3;
+}
+
+/* Goes on from a triangle's middle to that of the triangle across an edge. */
+static void step_over(const Trace *trace, const RefCylinders *cylinders, int corner, double at[2])
+{
+    int side[2] = {corner, trace->surface->twin[corner]};
+    for (int k = 0; k < 2; k++) {
+        double place[3][2], middle[2], way[2];
+        corners_of(trace, side[k] / 3, place);
+        middle_in(trace, side[k] / 3, middle);
+        for (int d = 0; d < 2; d++) {
+            way[d] =
+                (place[side[k] % 3][d] + place[ref_corner_next(side[k]) % 3][d]) / 2 - middle[d];
+            if (k) way[d] = -way[d];
+        }
+        ref_cylinders_walk(cylinders, at, way);
+    }
+}
+
+/* Whether two places of a rectangle are one. */
+static bool same(const Trace *trace, const RefCylinders *cylinders, const double a[2],
+                 const double b[2])
+{
+    const RefCylinder *in = cylinders->cylinder + ref_cylinders_at(cylinders, a);
+    double off = fabs(a[0] - b[0]), near = 1e4 * trace->near;
+    return fmin(off, fabs(off - (in->high[0] - in->low[0]))) < near && fabs(a[1] - b[1]) < near;
+}
+
+/* From the middle of the first arc to all triangles' middles; and whether all ways lead there. */
+static bool place_middles(const Trace *trace, RefLeaves *leaves)
+{
+    const RefTriangulation *surface = trace->surface;
+    const RefCylinders *cylinders = &leaves->cylinders;
+    const Arc *arc = trace->arc;
+    int *queue = sm_alloc((size_t)surface->triangles, sizeof *queue), root = 0;
+    bool *seen = sm_alloc((size_t)surface->triangles, sizeof *seen), whole = true;
+    double at[2], middle[2], way[2];
+    if (start_at(trace, 0, &root, at)) {
+        const RefCylinder *in = cylinders->cylinder + arc->over;
+        middle_in(trace, root, middle);
+        for (int d = 0; d < 2; d++) {
+            way[d] = middle[d] - at[d];
+            leaves->middle[root][d] = in->low[d] + (d ? 0 : arc->place[0] + arc->length / 2);
+        }
+        ref_cylinders_walk(cylinders, leaves->middle[root], way);
+        seen[root] = true;
+        queue[0] = root;
+    }
+    long end = seen[root];
+    for (long n = 0; n < end; n++)
+        for (int c = 3 * queue[n]; c < 3 * queue[n] + 3; c++) {
+            int next = surface->twin[c] / 3;
+            memcpy(at, leaves->middle[queue[n]], sizeof at);
+            step_over(trace, cylinders, c, at);
+            if (seen[next]) {
+                whole &= same(trace, cylinders, at, leaves->middle[next]);
+                continue;
+            }
+            seen[next] = true;
+            memcpy(leaves->middle[next], at, sizeof at);
+            queue[end++] = next;
+        }
+    free(queue);
+    free(seen);
+    return whole && end == surface->triangles;
+}
+
+/* Those of zeros stop short of them: there are no functions at a zero itself. */
+static void place_vertices(const Trace *trace, RefLeaves *leaves)
+{
+    const RefTriangulation *surface = trace->surface;
+    for (long v = 0; v < surface->vertices; v++) {
+        int corner = surface->corner[v];
+        double place[3][2], middle[2], way[2];
+        corners_of(trace, corner / 3, place);
+        middle_in(trace, corner / 3, middle);
+        for (int d = 0; d < 2; d++)
+            way[d] = (trace->is_zero[v] ? 1 - SHORT : 1) * (place[corner % 3][d] - middle[d]);
+        memcpy(leaves->at[v], leaves->middle[corner / 3], sizeof *leaves->at);
+        ref_cylinders_walk(&leaves->cylinders, leaves->at[v], way);
+    }
+}
+
+bool ref_leaves_trace(const RefTriangulation *surface, double *const step[2], int zeros,
+                      const int *zero, RefLeaves *leaves)
+{
+    size_t triangles = (size_t)surface->triangles, vertices = (size_t)surface->vertices;
+    bool *is_zero = sm_alloc(vertices, sizeof *is_zero);
+    Trace trace = {.surface = surface, .step = step, .is_zero = is_zero};
+    double area = 0;
+    *leaves = (RefLeaves){.middle = sm_alloc(triangles, sizeof(double[2])),
+                          .at = sm_alloc(vertices, sizeof(double[2]))};
+    trace.arc = sm_alloc(2 * (size_t)zeros, sizeof *trace.arc);
+    trace.first = sm_alloc(triangles, sizeof *trace.first);
+    for (size_t t = 0; t < triangles; t++) {
+        const double *x = step[0] + 3 * t, *y = step[1] + 3 * t;
+        area += (x[0] * y[1] - x[1] * y[0]) / 2;
+        trace.first[t] = -1;
+    }
+    trace.near = NEAR * sqrt(area);
+    for (int z = 0; z < zeros; z++) is_zero[zero[z]] = true;
+    bool traced = find_arcs(&trace, zeros, zero) && find_cylinders(&trace, &leaves->cylinders) &&
+                  place_middles(&trace, leaves);
+    if (traced) place_vertices(&trace, leaves);
+    sm_free_all(is_zero, trace.arc, trace.first, trace.piece);
+    if (!traced) ref_leaves_free(leaves);
+    return traced;
+}

@@ -1,0 +1,117 @@
+#include "multitorus.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "harmonic.h"
+#include "holomorphic.h"
+#include "zeros.h"
+
+enum { TRIED = 40 };
+/* Cells for each zero that are as bad as 1 of a form's score. */
+static const double MANY_CELLS = 20;
+/* Of edges: a form has as many zeros as it should where none is below 0. */
+static const double LEAST_WEIGHT = 1e-4;
+
+/* A form and what has become of the surface with it. */
+typedef struct {
+    RefTriangulation surface;
+    double *step[2];
+    RefLeaves leaves;
+} Attempt;
+
+static void attempt_free(Attempt *attempt)
+{
+    ref_triangulation_free(&attempt->surface);
+    ref_leaves_free(&attempt->leaves);
+    for (int d = 0; d < 2; d++) free(attempt->step[d]);
+}
+
+/* Scales the plane to the surface's area. */
+static void scale(const Attempt *attempt)
+{
+    long corners = 3 * attempt->surface.triangles;
+    double area = ref_triangulation_area(&attempt->surface);
+    double flat = ref_harmonic_wedge(&attempt->surface, attempt->step[0], attempt->step[1]);
+    double factor = sqrt(area / flat);
+    for (int d = 0; d < 2; d++)
+        for (long c = 0; c < corners; c++) attempt->step[d][c] *= factor;
+}
+
+/* False, and nothing to free, where it fails. */
+static bool try(const RefTriangulation *surface, const RefHolomorphic *basis, const int *number,
+                Attempt *attempt)
+{
+    int zeros = 2 * surface->genus - 2, *zero = sm_alloc((size_t)zeros, sizeof *zero);
+    *attempt = (Attempt){.surface = ref_triangulation_copy(surface)};
+    for (int d = 0; d < 2; d++)
+        attempt->step[d] = sm_alloc(3 * (size_t)surface->triangles, sizeof *attempt->step[d]);
+    ref_holomorphic_form(surface, basis, number, attempt->step);
+    bool made = ref_zeros_place(&attempt->surface, attempt->step, zero);
+    if (made) {
+        scale(attempt);
+        made = ref_leaves_trace(&attempt->surface, attempt->step, zeros, zero, &attempt->leaves);
+    }
+    free(zero);
+    if (!made) attempt_free(attempt);
+    return made;
+}
+
+/* The cells of cylinders that are square. */
+static double cells_of(const RefCylinders *cylinders)
+{
+    double cells = 0;
+    for (int c = 0; c < cylinders->count; c++) {
+        const RefCylinder *one = cylinders->cylinder + c;
+        double shape = (one->high[1] - one->low[1]) / (one->high[0] - one->low[0]);
+        cells += rint(fmax(shape, 1 / shape));
+    }
+    return cells;
+}
+
+/* The best of the forms; false where none will do. */
+static bool try_all(const RefTriangulation *surface, const RefHolomorphic *basis, Attempt *best)
+{
+    double least = INFINITY, score[TRIED];
+    int *number = sm_alloc((size_t)(TRIED * basis->count), sizeof *number);
+    int count = ref_holomorphic_choose(surface, basis, TRIED, number, score);
+    for (int n = 0; n < count; n++) {
+        Attempt attempt;
+        if (!try(surface, basis, number + n * basis->count, &attempt)) continue;
+        double cells = cells_of(&attempt.leaves.cylinders) / (2 * surface->genus - 2);
+        double found = score[n] + cells / MANY_CELLS;
+        if (found >= least) {
+            attempt_free(&attempt);
+            continue;
+        }
+        if (isfinite(least)) attempt_free(best);
+        least = found;
+        *best = attempt;
+    }
+    free(number);
+    return isfinite(least);
+}
+
+SmCode ref_multitorus_unfold(RefTriangulation *surface, const char *name, double *step[2],
+                             RefLeaves *leaves, SmError *error)
+{
+    RefHolomorphic basis;
+    Attempt best;
+    double *weight = ref_harmonic_weights(surface, LEAST_WEIGHT);
+    SmCode code = ref_holomorphic_create(surface, weight, name, &basis, error);
+    free(weight);
+    if (code != SM_OK) return code;
+    bool found = try_all(surface, &basis, &best);
+    ref_holomorphic_free(&basis);
+    if (!found)
+        return sm_fail(error, SM_INPUT,
+                       "%s: a surface of genus %d, of whose maps each turns a triangle over: give "
+                       "it more triangles, or cut handles",
+                       name, surface->genus);
+    ref_triangulation_free(surface);
+    *surface = best.surface;
+    *leaves = best.leaves;
+    for (int d = 0; d < 2; d++) step[d] = best.step[d];
+    return SM_OK;
+}

@@ -1,0 +1,19 @@
+/* zeros.h - makes the zeros of a holomorphic one-form vertices of the triangulation.
+ *
+ * Near a zero the form's integral is z^2: triangles around it have twice their angles in the plane.
+ * One that holds a zero is turned over, as is one at a zero with an angle of 90 degrees and more.
+ * (A discrete form has its zeros, by their index, at vertices: Gortler, Gotsman and Thurston 2006;
+ * but where these are differs by the form's direction.) */
+#ifndef REF_ZEROS_H
+#define REF_ZEROS_H
+
+#include "triangulation.h"
+
+/* Puts a vertex at every zero but where one is close, halves edges across from it until its angles
+ * are narrow, and moves it in the plane to where no triangle around is turned over; new vertices
+ * get what a quadratic function near the zero has. `step`, [2][3 * triangles] from malloc(), grows
+ * with the surface. Writes the zeros' vertices into `zero`, [2 genus - 2]; false, and everything as
+ * it may be, where zeros are double, or a triangle is turned over all the same. O(triangles). */
+bool ref_zeros_place(RefTriangulation *surface, double *step[2], int *zero);
+
+#endif
