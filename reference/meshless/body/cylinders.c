@@ -39,6 +39,23 @@ int ref_cylinders_at(const RefCylinders *cylinders, const double theta[2])
     return at;
 }
 
+bool ref_cylinders_zero(const RefCylinders *cylinders, const double low[2], const double high[2])
+{
+    int at = ref_cylinders_at(cylinders, low);
+    const RefCylinder *cylinder = cylinders->cylinder + at;
+    double width = width_of(cylinder), tiny = 1e-9 * width;
+    for (int j = 0; j < cylinders->joints; j++) {
+        const RefJoint *joint = cylinders->joint + j;
+        double side = joint->up ? cylinder->high[1] : cylinder->low[1];
+        if (joint->from != at || side < low[1] - tiny || side > high[1] + tiny) continue;
+        for (int k = 0; k < 2; k++) /* the left side's is also the right one's */
+            if (joint->begin + k * width >= low[0] - tiny &&
+                joint->begin + k * width <= high[0] + tiny)
+                return true;
+    }
+    return false;
+}
+
 /* Moves a place along the first axis into a rectangle. */
 static void wrap(const RefCylinder *cylinder, double theta[2])
 {
@@ -110,11 +127,100 @@ void ref_cylinders_walk(const RefCylinders *cylinders, double theta[2], const do
 
 /* ---- images */
 
-/* Whether the box about `at` and an interval of a side reach into one another. */
-static bool touches(const RefCylinder *cylinder, double low, double high)
+/* A cylinder's rectangle that lines from a place reach, in the plane that goes on straight from
+ * there: the place is at `from` in the cylinder's own plane, and lines come between two
+ * directions. */
+typedef struct {
+    int at;
+    double from[2], right[2], left[2];
+    bool all; /* all directions: it is the place's own */
+} Sight;
+
+typedef struct {
+    const RefCylinders *cylinders;
+    double low[2], high[2], enlarged; /* of the box, from the place */
+    long count, room;
+    Sight *sight; /* what is looked at, one after the other */
+} Look;
+
+static double cross(const double a[2], const double b[2])
 {
-    double tiny = 1e-9 * width_of(cylinder);
-    return fmin(high, cylinder->high[0]) - fmax(low, cylinder->low[0]) > tiny;
+    return a[0] * b[1] - a[1] * b[0];
+}
+
+/* Goes on from a rectangle across a piece of its side along axis `axis`, seen from the place, to
+ * where the place is at `there` in the plane of `to`. */
+static void look_through(Look *look, const Sight *sight, int axis, double side, double begin,
+                         double end, int to, const double there[2])
+{
+    double away = side - sight->from[!axis], ends[2][2];
+    begin = fmax(begin - sight->from[axis], look->low[axis]);
+    end = fmin(end - sight->from[axis], look->high[axis]);
+    double tiny = 1e-9 * (look->high[axis] - look->low[axis]);
+    if (end - begin <= tiny || away <= look->low[!axis] || away >= look->high[!axis]) return;
+    bool left_first = (away > 0) == (axis == 0); /* of both ends, as seen from the place */
+    for (int e = 0; e < 2; e++) {
+        ends[e][axis] = e ? end : begin;
+        ends[e][!axis] = away;
+    }
+    const double *left = ends[left_first ? 0 : 1], *right = ends[left_first ? 1 : 0];
+    if (!sight->all && cross(sight->right, right) < 0) right = sight->right;
+    if (!sight->all && cross(sight->left, left) > 0) left = sight->left;
+    double width = cross(right, left);
+    if (width <= 1e-12 * hypot(right[0], right[1]) * hypot(left[0], left[1])) return;
+    Sight next = {.at = to, .from = {there[0], there[1]}};
+    memcpy(next.right, right, sizeof next.right);
+    memcpy(next.left, left, sizeof next.left);
+    sm_make_room(look->sight, look->room, look->count + 1);
+    look->sight[look->count++] = next;
+}
+
+/* Across an interval of a side, of which the piece that is in the rectangle begins `around`
+ * farther; the side beyond may be in several widths. */
+static void look_across(Look *look, const Sight *sight, const RefJoint *joint, double around)
+{
+    const RefCylinder *from = look->cylinders->cylinder + joint->from;
+    const RefCylinder *next = look->cylinders->cylinder + joint->to;
+    double begin = fmax(joint->begin + around, from->low[0]);
+    double end = fmin(joint->end + around, from->high[0]);
+    double width = width_of(next), on = joint->shift[0] - around;
+    double side = joint->up ? from->high[1] : from->low[1];
+    bool out = joint->up ? side > sight->from[1] : side < sight->from[1];
+    if (!out || end <= begin) return;
+    for (double k = floor((begin + on - next->low[0]) / width); next->low[0] + k * width < end + on;
+         k++) {
+        double first = next->low[0] + k * width - on; /* of the width, seen from here */
+        const double there[2] = {sight->from[0] + on - k * width, sight->from[1] + joint->shift[1]};
+        look_through(look, sight, 0, side, fmax(begin, first), fmin(end, first + width), joint->to,
+                     there);
+    }
+}
+
+/* Goes on from a rectangle to those beside, and notes whether a zero of it is near. */
+static bool look_around(Look *look, const Sight *sight)
+{
+    const RefCylinder *cylinder = look->cylinders->cylinder + sight->at;
+    double width = width_of(cylinder), by = look->enlarged;
+    bool near = false;
+    for (int k = -1; k <= 1; k += 2) {
+        double side = k > 0 ? cylinder->high[0] : cylinder->low[0];
+        const double there[2] = {sight->from[0] - k * width, sight->from[1]};
+        if (k * (side - sight->from[0]) > 0)
+            look_through(look, sight, 1, side, cylinder->low[1], cylinder->high[1], sight->at,
+                         there);
+    }
+    for (int j = 0; j < look->cylinders->joints; j++) {
+        const RefJoint *joint = look->cylinders->joint + j;
+        if (joint->from != sight->at) continue;
+        double up = (joint->up ? cylinder->high[1] : cylinder->low[1]) - sight->from[1];
+        for (int k = -1; k <= 1; k++) {
+            double on = joint->begin + k * width - sight->from[0];
+            near |= up > look->low[1] - by && up < look->high[1] + by && on > look->low[0] - by &&
+                    on < look->high[0] + by;
+        }
+        for (int k = -1; k <= 0; k++) look_across(look, sight, joint, k * width);
+    }
+    return near;
 }
 
 static void add_image(RefCylinderImages *images, int to, const double shift[2], double tiny)
@@ -132,70 +238,24 @@ static void add_image(RefCylinderImages *images, int to, const double shift[2], 
     memcpy(images->shift[images->count++], shift, 2 * sizeof *shift);
 }
 
-/* What is across a joint, of which the piece that is in the rectangle begins `around` farther. */
-static void look_across(const RefCylinders *cylinders, const RefJoint *joint, double around,
-                        const double shift[2], const double low[2], const double high[2],
-                        RefCylinderImages *images)
-{
-    const RefCylinder *from = cylinders->cylinder + joint->from;
-    const RefCylinder *next = cylinders->cylinder + joint->to;
-    double begin = fmax(joint->begin + around, fmax(from->low[0], low[0]));
-    double end = fmin(joint->end + around, fmin(from->high[0], high[0]));
-    double width = width_of(next), tiny = 1e-9 * width;
-    if (end - begin <= tiny) return;
-    double on = joint->shift[0] - around, first = floor((begin + on - next->low[0]) / width);
-    for (double k = first; next->low[0] + k * width < end + on; k++) {
-        if (!touches(next, begin + on - k * width, end + on - k * width)) continue;
-        const double there[2] = {shift[0] + on - k * width, shift[1] + joint->shift[1]};
-        add_image(images, joint->to, there, tiny);
-    }
-}
-
-/* Adds what is next to an image's cylinder in a box of its plane, and notes zeros there. */
-static void look_around(const RefCylinders *cylinders, int at, const double shift[2],
-                        const double low[2], const double high[2], double enlarged,
-                        RefCylinderImages *images)
-{
-    const RefCylinder *cylinder = cylinders->cylinder + at;
-    double width = width_of(cylinder), tiny = 1e-9 * width;
-    for (int k = -1; k <= 1; k += 2) {
-        if (!touches(cylinder, low[0] - k * width, high[0] - k * width)) continue;
-        const double there[2] = {shift[0] - k * width, shift[1]};
-        add_image(images, at, there, tiny);
-    }
-    for (int j = 0; j < cylinders->joints; j++) {
-        const RefJoint *joint = cylinders->joint + j;
-        if (joint->from != at) continue;
-        double side = joint->up ? cylinder->high[1] : cylinder->low[1];
-        bool near = side > low[1] - enlarged && side < high[1] + enlarged;
-        for (int k = -1; k <= 1; k++) {
-            double zero = joint->begin + k * width;
-            images->zero |= near && zero > low[0] - enlarged && zero < high[0] + enlarged;
-        }
-        bool across = joint->up ? high[1] > side + tiny : low[1] < side - tiny;
-        for (int k = -1; k <= 0 && across; k++)
-            look_across(cylinders, joint, k * width, shift, low, high, images);
-    }
-}
-
 void ref_cylinders_images(const RefCylinders *cylinders, const double theta[2], const double low[2],
                           const double high[2], double enlarged, RefCylinderImages *images)
 {
+    Look look = {.cylinders = cylinders, .enlarged = enlarged, .count = 1};
+    memcpy(look.low, low, sizeof look.low);
+    memcpy(look.high, high, sizeof look.high);
+    sm_make_room(look.sight, look.room, 1);
+    look.sight[0] = (Sight){
+        .at = ref_cylinders_at(cylinders, theta), .from = {theta[0], theta[1]}, .all = true};
     images->count = 0;
     images->zero = false;
-    add_image(images, ref_cylinders_at(cylinders, theta), (double[2]){0, 0}, 0);
-    for (int n = 0; n < images->count && n < MOST_JOINTS_PASSED; n++) {
-        double shift[2], from[2], to[2];
-        const RefCylinder *cylinder = cylinders->cylinder + images->to[n];
-        memcpy(shift, images->shift[n], sizeof shift);
-        for (int d = 0; d < 2; d++) {
-            from[d] = theta[d] + shift[d] + low[d];
-            to[d] = theta[d] + shift[d] + high[d];
-        }
-        if (to[1] + enlarged <= cylinder->low[1] || from[1] - enlarged >= cylinder->high[1])
-            continue;
-        look_around(cylinders, images->to[n], shift, from, to, enlarged, images);
+    for (long n = 0; n < look.count; n++) {
+        const Sight sight = look.sight[n];
+        const double shift[2] = {sight.from[0] - theta[0], sight.from[1] - theta[1]};
+        add_image(images, sight.at, shift, 1e-9 * width_of(cylinders->cylinder + sight.at));
+        images->zero |= look_around(&look, &sight);
     }
+    free(look.sight);
 }
 
 /* ---- what passes zeros */
@@ -308,5 +368,6 @@ bool ref_cylinders_pass(const RefCylinders *cylinders, const double x[2], const 
     }
     double off = fabs(theta[0] - node[0]), width = width_of(cylinders->cylinder + end);
     off = fmin(off, fabs(off - width));
-    return part[0] > 0 && off < SAME * reach && fabs(theta[1] - node[1]) < SAME * reach;
+    return part[0] > 0 && end == ref_cylinders_at(cylinders, node) && off < SAME * reach &&
+           fabs(theta[1] - node[1]) < SAME * reach;
 }

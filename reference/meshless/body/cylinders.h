@@ -35,17 +35,19 @@ void ref_cylinders_free(RefCylinders *cylinders);
 /* The cylinder of a place of its rectangle, or near that. */
 int ref_cylinders_at(const RefCylinders *cylinders, const double theta[2]);
 
+/* Whether a box of a rectangle has a zero on its sides. O(joints). */
+bool ref_cylinders_zero(const RefCylinders *cylinders, const double low[2], const double high[2]);
+
 /* Goes straight from a place of a rectangle: theta becomes the place where that ends, in its
  * rectangle. A way that meets a zero passes it on one side. O(joints passed). */
 void ref_cylinders_walk(const RefCylinders *cylinders, double theta[2], const double way[2]);
 
-/* Where a box around a place of a rectangle reaches: shifts by which the place gets into the planes
- * of cylinders there, the first one zero. Where the box holds a zero, there may be others among
- * them that no straight line leads to. */
+/* Where straight lines from a place of a rectangle lead to in a box around it: shifts by which the
+ * place gets into the planes of cylinders there, the first one zero. */
 typedef struct {
     int count, room, *to;
     double (*shift)[2];
-    bool zero; /* the box, enlarged by so much to all sides, has one */
+    bool zero; /* there may be one in the box, enlarged by so much to all sides */
 } RefCylinderImages;
 
 /* `low` and `high` say how far the box reaches from the place, low being negative; images of an

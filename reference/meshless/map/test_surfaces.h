@@ -5,6 +5,7 @@
 #include "../../../lib/mesh/mesh.h"
 #include "../../../lib/test_frame.h"
 #include "../../../lib/test_random.h"
+#include "../surface/surface_nets.h"
 
 typedef void Place(double u, double v, double x[3]);
 
@@ -71,6 +72,55 @@ static inline SmMesh sphere_mesh(int n, double noise, unsigned *seed)
 {
     return ball_mesh(n, false, noise, seed);
 }
+
+/* Tori of radius 1 or more in a row, that have grown into one another: a smooth minimum of their
+ * distances. */
+typedef struct {
+    int tori;
+    double centre[4][2], ring[4], tube[4];
+} Tori;
+
+static inline double tori_at(const void *body, const double x[3], double gradient[3])
+{
+    const Tori *all = body;
+    const double sharp = 4;
+    double sum = 0, slope[3] = {0};
+    for (int n = 0; n < all->tori; n++) {
+        double way[2] = {x[0] - all->centre[n][0], x[1] - all->centre[n][1]};
+        double out = hypot(way[0], way[1]), off = out - all->ring[n];
+        double from = hypot(off, x[2]), share = exp(sharp * (all->tube[n] - from));
+        sum += share;
+        for (int d = 0; d < 3; d++)
+            slope[d] += share * (d == 2 ? x[2] : off * way[d] / fmax(out, 1e-9)) / fmax(from, 1e-9);
+    }
+    for (int d = 0; gradient && d < 3; d++) gradient[d] = slope[d] / sum;
+    return -log(sum) / sharp;
+}
+
+/* Their surface, of so many cells along its length, irregular. */
+static inline SmMesh tori_mesh(const Tori *all, int cells, unsigned *seed)
+{
+    RefField field = {tori_at, all, {INFINITY, INFINITY, -1}, {-INFINITY, -INFINITY, 1.03}};
+    for (int n = 0; n < all->tori; n++)
+        for (int d = 0; d < 2; d++) {
+            double out = all->ring[n] + all->tube[n] + 0.4; /* no even numbers of cells */
+            field.low[d] = fmin(field.low[d], all->centre[n][d] - out);
+            field.high[d] = fmax(field.high[d], all->centre[n][d] + out - 0.0173);
+        }
+    SmMesh mesh;
+    SmError error = {0};
+    double edge = (field.high[0] - field.low[0]) / cells;
+    if (ref_surface_nets(&field, cells, &mesh, &error) != SM_OK) fail_msg("%s", error.text);
+    for (long v = 0; v < mesh.vertex_count; v++) {
+        for (int d = 0; d < 3; d++) mesh.position[v][d] += random_between(seed, -0.2, 0.2) * edge;
+        assert_true(ref_field_project(&field, edge, 1e-9, mesh.position[v]));
+    }
+    return mesh;
+}
+
+static const Tori double_torus = {2, {{-1.1, 0}, {1.2, 0.3}}, {1, 1.2}, {0.42, 0.35}};
+static const Tori even_double_torus = {2, {{-1.1, 0}, {1.1, 0}}, {1, 1}, {0.42, 0.42}};
+static const Tori triple_torus = {3, {{-2.3, 0}, {0, 0.2}, {2.4, 0}}, {1, 1.1, 1}, {0.42, 0.42, 0.4}};
 
 static inline void random_move(unsigned *seed, SmMesh *mesh)
 {

@@ -59,26 +59,28 @@ static void split(RefQuadtree *tree, long at)
             parent.grid};
 }
 
+/* At a zero of the chart's form functions are rough: as if cells there were so many times as large
+ * they are split, once more for each factor of root 2. */
+static const double FINER_AT_ZEROS = 2;
+
 /* The longer edge on the surface. */
 static double edge_on_surface(const RefQuadtree *tree, const RefCell *cell)
 {
-    double middle[2], edge[2], largest = 0;
+    double middle[2], edge[2], low[2], high[2], largest = 0, finer = 1;
     const RefChart *chart = tree->chart;
     ref_quadtree_cell(tree, cell, middle, edge);
-    if (chart->mean) {
-        double low[2], high[2];
-        for (int d = 0; d < 2; d++) {
-            low[d] = middle[d] - edge[d] / 2;
-            high[d] = middle[d] + edge[d] / 2;
-        }
-        largest = chart->mean(chart->data, low, high);
+    for (int d = 0; d < 2; d++) {
+        low[d] = middle[d] - edge[d] / 2;
+        high[d] = middle[d] + edge[d] / 2;
     }
+    if (chart->mean) largest = chart->mean(chart->data, low, high);
+    if (chart->cylinders && ref_cylinders_zero(chart->cylinders, low, high)) finer = FINER_AT_ZEROS;
     for (int n = 0; n < 25 && !chart->mean; n++) {
         double theta[2] = {middle[0] + edge[0] * (n % 5 - 2) / 4.0,
                            middle[1] + edge[1] * (n / 5 - 2) / 4.0};
         largest = fmax(largest, chart->factor(chart->data, theta));
     }
-    return largest * fmax(edge[0], edge[1]);
+    return finer * largest * fmax(edge[0], edge[1]);
 }
 
 static bool refine(RefQuadtree *tree, double threshold)

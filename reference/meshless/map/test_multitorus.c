@@ -1,0 +1,212 @@
+/* Maps of closed surfaces of genus 2 and more, and shells on them. */
+#include "../shell/test_shell.h"
+#include "../solve/modes.h"
+#include "../test_solver.h"
+#include "surface_map.h"
+#include "test_surfaces.h"
+
+static unsigned seed = 3;
+
+static RefSurfaceMap map_of(const SmMesh *mesh, int genus)
+{
+    RefSurfaceMap map;
+    SmError error = {0};
+    if (ref_surface_map_create(mesh, "mesh", &map, &error) != SM_OK) fail_msg("%s", error.text);
+    assert_int_equal(map.kind, REF_MAP_MULTITORUS);
+    assert_int_equal(map.flips, 0);
+    assert_int_equal(map.handles, 0);
+    assert_int_equal(ref_surface_map_triangles(&map)->genus, genus);
+    return map;
+}
+
+static double area_of(const SmMesh *mesh)
+{
+    double area = 0;
+    for (long t = 0; t < mesh->triangle_count; t++) {
+        double normal[3];
+        const int *v = mesh->triangle[t];
+        sm_area_vector(mesh->position[v[0]], mesh->position[v[1]], mesh->position[v[2]], normal);
+        area += sqrt(sm_dot(normal, normal)) / 2;
+    }
+    return area;
+}
+
+/* Cylinders are 3 g - 3, their area is the surface's, and intervals fill their sides. */
+static void check_cylinders(const SmMesh *mesh, const RefSurfaceMap *map, int genus)
+{
+    const RefCylinders *all = map->chart.cylinders;
+    double area = 0;
+    assert_int_equal(all->count, 3 * genus - 3);
+    assert_int_equal(all->joints, 8 * (genus - 1));
+    for (int c = 0; c < all->count; c++) {
+        const RefCylinder *one = all->cylinder + c;
+        double width = one->high[0] - one->low[0], filled[2] = {0};
+        area += width * (one->high[1] - one->low[1]);
+        assert_true(c == 0 || one->low[0] > one[-1].high[0]);
+        for (int j = 0; j < all->joints; j++)
+            if (all->joint[j].from == c)
+                filled[all->joint[j].up] += all->joint[j].end - all->joint[j].begin;
+        for (int k = 0; k < 2; k++) assert_true(fabs(filled[k] / width - 1) < 1e-9);
+    }
+    assert_true(fabs(area / area_of(mesh) - 1) < 1e-3);
+}
+
+/* The chart is where the vertices say; places across joints are one; parts have their area. */
+static void check_chart(const SmMesh *mesh, const RefSurfaceMap *map)
+{
+    const RefChart *chart = &map->chart;
+    const RefCylinders *all = chart->cylinders;
+    double parts = 0, area = area_of(mesh), size = sqrt(area);
+    for (long v = 0; v < map->vertices; v++) {
+        double x[3];
+        chart->place(chart->data, map->theta[v], x);
+        assert_true(sqrt(sm_square_between(x, mesh->position[v])) < 1e-4 * size);
+    }
+    for (int n = 0; n < 400; n++) {
+        const RefJoint *joint = all->joint + n % all->joints;
+        const RefCylinder *in = all->cylinder + joint->from;
+        double share = random_between(&seed, 0.01, 0.99), x[3], y[3];
+        double theta[2] = {joint->begin + share * (joint->end - joint->begin),
+                           joint->up ? in->high[1] : in->low[1]};
+        if (theta[0] > in->high[0]) theta[0] -= in->high[0] - in->low[0];
+        chart->place(chart->data, theta, x);
+        ref_cylinders_walk(all, theta, (double[2]){0, (joint->up ? 1 : -1) * 1e-9});
+        assert_int_equal(ref_cylinders_at(all, theta), joint->to);
+        chart->place(chart->data, theta, y);
+        assert_true(sqrt(sm_square_between(x, y)) < 1e-6 * size);
+    }
+    for (int c = 0; c < all->count; c++)
+        for (int n = 0; n < 12; n++) {
+            double low[2], high[2], side[2];
+            for (int d = 0; d < 2; d++) {
+                int count = d ? 4 : 3, which = d ? n / 3 : n % 3;
+                side[d] = (all->cylinder[c].high[d] - all->cylinder[c].low[d]) / count;
+                low[d] = all->cylinder[c].low[d] + which * side[d];
+                high[d] = low[d] + side[d];
+            }
+            parts += pow(chart->mean(chart->data, low, high), 2) * side[0] * side[1];
+        }
+    assert_true(fabs(parts / area - 1) < 1e-3);
+}
+
+/* Angles of the plane are those of the surface, better with more points. */
+TEST(a_double_torus_is_three_cylinders)
+{
+    needs_solver();
+    double median[2];
+    for (int fine = 0; fine < 2; fine++) {
+        SmMesh mesh = tori_mesh(&double_torus, fine ? 90 : 45, &seed);
+        random_move(&seed, &mesh);
+        RefSurfaceMap map = map_of(&mesh, 2);
+        check_cylinders(&mesh, &map, 2);
+        check_chart(&mesh, &map);
+        median[fine] = map.angle_median;
+        ref_surface_map_free(&map);
+        sm_mesh_free(&mesh);
+    }
+    assert_true(median[0] < 2.5 && median[1] < 0.65 * median[0]);
+}
+
+TEST(so_is_one_with_symmetries_and_a_triple_torus_is_six)
+{
+    needs_solver();
+    for (int genus = 2; genus < 4; genus++) {
+        SmMesh mesh = tori_mesh(genus == 2 ? &even_double_torus : &triple_torus, 80, &seed);
+        RefSurfaceMap map = map_of(&mesh, genus);
+        check_cylinders(&mesh, &map, genus);
+        check_chart(&mesh, &map);
+        assert_true(map.angle_median < 2);
+        ref_surface_map_free(&map);
+        sm_mesh_free(&mesh);
+    }
+}
+
+/* Around every vertex that is given the plane has one turn or, at zeros, two. */
+TEST(zeros_have_two_turns)
+{
+    needs_solver();
+    SmMesh mesh = tori_mesh(&triple_torus, 70, &seed);
+    RefSurfaceMap map = map_of(&mesh, 3);
+    const RefTriangulation *surface = ref_surface_map_triangles(&map);
+    double *turn = sm_alloc((size_t)surface->vertices, sizeof *turn);
+    for (long t = 0; t < surface->triangles; t++) {
+        RefMapTriangle one = ref_surface_map_triangle(&map, t);
+        for (int i = 0; i < 3; i++) {
+            const double *at = one.theta[i], *next = one.theta[(i + 1) % 3];
+            const double *last = one.theta[(i + 2) % 3];
+            double a[2] = {next[0] - at[0], next[1] - at[1]};
+            double b[2] = {last[0] - at[0], last[1] - at[1]};
+            turn[surface->vertex[3 * t + i]] +=
+                atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]) / (2 * M_PI);
+        }
+    }
+    int zeros = 0;
+    for (long v = 0; v < surface->vertices; v++) {
+        assert_true(fabs(turn[v] - 1) < 1e-6 || fabs(turn[v] - 2) < 1e-6);
+        zeros += turn[v] > 1.5;
+    }
+    assert_int_equal(zeros, 4);
+    free(turn);
+    ref_surface_map_free(&map);
+    sm_mesh_free(&mesh);
+}
+
+static RefShellOptions options_of(long nodes, bool linear)
+{
+    return (RefShellOptions){.across = 1,
+                             .nodes = nodes,
+                             .basis = linear ? REF_MLS_PLANE_LINEAR : REF_MLS_PLANE_QUADRATIC,
+                             .thickness = 0.05,
+                             .material = {1e5, 0.3, 2}};
+}
+
+/* How large the forces of a rigid motion are, beside those of a random one that is as large. */
+static double forces_of(const RefShell *shell, int kind)
+{
+    long size = 3 * shell->nodes.count;
+    double length[2][2] = {{0}}, *f = sm_alloc((size_t)size, sizeof *f);
+    double(*u)[3] = sm_alloc((size_t)size / 3, sizeof *u);
+    for (int random = 0; random < 2; random++) {
+        memset(f, 0, (size_t)size * sizeof *f);
+        for (long n = 0; n < shell->nodes.count; n++) {
+            double turn[3] = {0};
+            for (int d = 0; d < 3; d++) u[n][d] = random ? random_between(&seed, -1, 1) : kind == d;
+            if (!random && kind > 2) turn[kind - 3] = 1;
+            if (!random && kind > 2) sm_cross(turn, shell->X[n], u[n]);
+        }
+        ref_sparse_apply(&shell->matrices.stiffness, 1, u[0], f);
+        for (long n = 0; n < size; n++) {
+            length[random][0] += f[n] * f[n];
+            length[random][1] += u[n / 3][n % 3] * u[n / 3][n % 3];
+        }
+    }
+    sm_free_all(f, u);
+    return sqrt(length[0][0] / length[0][1] / (length[1][0] / length[1][1]));
+}
+
+/* Six motions cost nothing, and no seventh does; the middle surface has the mesh's area. */
+TEST(shells_of_it_are_rigid_in_six_ways)
+{
+    needs_solver();
+    SmMesh mesh = tori_mesh(&double_torus, 60, &seed);
+    RefSurfaceMap map = map_of(&mesh, 2);
+    for (int linear = 0; linear < 2; linear++) {
+        RefShellOptions options = options_of(900, linear);
+        RefShell shell;
+        RefModes modes;
+        shell_of(&map.chart, &options, &shell);
+        for (int kind = 0; kind < 6; kind++) assert_true(forces_of(&shell, kind) < 1e-10);
+        assert_int_equal(ref_modes_find(&shell.matrices, NULL, 8, &modes, NULL), SM_OK);
+        for (int k = 0; k < 6; k++) assert_true(fabs(modes.lambda[k]) < 1e-5 * modes.lambda[6]);
+        double *mass = sm_alloc((size_t)shell.nodes.count, sizeof *mass), area = 0;
+        ref_sparse_sums(&shell.matrices.mass, mass);
+        for (long n = 0; n < shell.nodes.count; n++)
+            area += mass[n] / (options.material.density * options.thickness);
+        printf("area %g of %g, nodes %ld lambda %g %g\n", area, area_of(&mesh), shell.nodes.count,modes.lambda[6],modes.lambda[7]);
+        free(mass);
+        ref_modes_free(&modes);
+        ref_shell_free(&shell);
+    }
+    ref_surface_map_free(&map);
+    sm_mesh_free(&mesh);
+}
