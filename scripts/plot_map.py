@@ -2,7 +2,7 @@
 """Draws conformal maps that `shapebench info MESH --map -o FILE.h5` wrote, a row each: the surface under a
 checkerboard of its parameters, under the quadtree's cells with the nodes in them, and the plane of parameters.
 
-The board goes on across seams. Its squares are square on the surface where the map keeps angles; how large they are
+The board goes on across seams, but not from one cylinder of a surface with two handles and more to another. Its squares are square on the surface where the map keeps angles; how large they are
 there, and the colours of cells, say what the conformal factor L is.
 
 Needs Debian's python3-h5py and python3-matplotlib (scripts/setup). Exit codes: 0 drawn; 2 wrong usage; 3 not a
@@ -19,6 +19,10 @@ ARRAYS = {  # dataset: kind of its numbers and its shape, whose letters stand fo
     "surface/points": ("f", "v3"), "surface/triangles": ("i", "t3"), "surface/parameters": ("f", "t32"),
     "surface/factor": ("f", "v"), "cells/low": ("f", "c2"), "cells/high": ("f", "c2"), "cells/factor": ("f", "c"),
     "nodes/parameters": ("f", "n2"), "nodes/points": ("f", "n3"),
+}
+CYLINDERS = {  # of a surface with two handles and more
+    "cylinders/low": ("f", "k2"), "cylinders/high": ("f", "k2"), "joints/from": ("i", "j"), "joints/to": ("i", "j"),
+    "joints/up": ("u", "j"), "joints/begin": ("f", "j"), "joints/end": ("f", "j"), "joints/shift": ("f", "j2"),
 }
 PIXELS, FINER = 360, 2  # of a panel, and how many times finer it is drawn
 SIGHT = numpy.array([[0.87, 0.0, -0.5], [-0.14, 0.96, -0.25], [0.48, 0.29, 0.83]])  # rows: right, up, towards us
@@ -41,7 +45,8 @@ def inside(x, bounds, margin):
 def check(held):
     """Raises ValueError where numbers are none that a map has."""
     sizes = {}
-    wrong = [name for name, (kind, shape) in ARRAYS.items() if not fits(held[name], kind, shape, sizes)]
+    arrays = ARRAYS | (CYLINDERS if "cylinders/low" in held else {})
+    wrong = [name for name, (kind, shape) in arrays.items() if not fits(held[name], kind, shape, sizes)]
     if wrong or not all(sizes[letter] for letter in "vtcn"):
         raise ValueError(f"{', '.join(wrong) or 'arrays without a row'}: not those of a map")
     low, side, points = held["low"], held["high"] - held["low"], held["surface/points"]
@@ -60,6 +65,10 @@ def check(held):
         "cells/factor": 0 < factor.min() and factor.max() < 1e200 * factor.min(),
         "nodes": inside(held["nodes/points"], box, 0.02) and inside(held["nodes/parameters"], rectangle, 0.001),
     }
+    if "cylinders/low" in held:
+        ends, own = held["cylinders/high"] - held["cylinders/low"], len(held["cylinders/low"])
+        right["cylinders"] = own > 0 and (ends > 1e-9 * side).all() and (numpy.diff(held["cylinders/low"][:, 0]) > 0).all()
+        right["joints"] = all(((0 <= held[name]) & (held[name] < own)).all() for name in ("joints/from", "joints/to"))
     wrong = [name for name, whole in right.items() if not whole]
     if wrong:
         raise ValueError(f"{', '.join(wrong)}: not those of a map")
@@ -71,9 +80,35 @@ def read(path):
         if file.attrs.get("kind") not in (b"shapebench map", "shapebench map"):
             fail(f"{path}: not what `shapebench info --map` writes", 3)
         held = {name: file[name][()] for name in ARRAYS}
+        if "cylinders" in file:
+            held.update({name: file[name][()] for name in CYLINDERS})
         held.update(low=file.attrs["low"], high=file.attrs["high"], angle=file.attrs["angle_error"])
         check(held)
         return held
+
+
+def rectangles(held):
+    """Low and high corners of the plane's parts."""
+    if "cylinders/low" in held:
+        return held["cylinders/low"], held["cylinders/high"]
+    return held["low"][None], held["high"][None]
+
+
+def entered(held, theta, inside):
+    """Places, which are near others that are inside of cylinders, moved into these, and which cylinders they are in."""
+    low, high = rectangles(held)
+    cylinder = (numpy.searchsorted(low[:, 0], inside[:, 0], side="right") - 1).clip(0)
+    width, theta = (high - low)[:, 0], theta.copy()
+    beyond = (theta[:, 1] > high[cylinder, 1]) * 1 - (theta[:, 1] < low[cylinder, 1])
+    there, home = theta.copy(), cylinder.copy()
+    for n, start in enumerate(held["joints/from"]):
+        on = (theta[:, 0] - held["joints/begin"][n]) % width[start]
+        across = (home == start) & (beyond == (1 if held["joints/up"][n] else -1))
+        across &= on <= held["joints/end"][n] - held["joints/begin"][n]
+        there[across] = numpy.stack([held["joints/begin"][n] + on, theta[:, 1]], 1)[across] + held["joints/shift"][n]
+        cylinder[across] = held["joints/to"][n]
+    there[:, 0] = low[cylinder, 0] + (there[:, 0] - low[cylinder, 0]) % width[cylinder]
+    return there, cylinder
 
 
 class View:
@@ -101,7 +136,11 @@ class View:
             for some in numpy.array_split(which, 1 + len(which) * len(share) // 2000000):
                 self.put(some, share, corner, held["surface/parameters"], theta)
         self.drawn = numpy.flatnonzero(self.triangle >= 0)
-        self.theta, self.shade = theta[self.drawn], shade[self.triangle[self.drawn]]
+        triangle = self.triangle[self.drawn]
+        self.theta, self.shade = theta[self.drawn], shade[triangle]
+        self.cylinder = numpy.zeros(len(self.drawn), int)
+        if "cylinders/low" in held:
+            self.theta, self.cylinder = entered(held, self.theta, held["surface/parameters"].mean(1)[triangle])
 
     def on_screen(self, points):
         """Pixels to the right, up and towards us."""
@@ -152,30 +191,48 @@ def board(held):
     return origin, board
 
 
-def checkers(held, theta):
+def checkers(held, theta, cylinder):
     origin, squares = board(held)
     place = (theta - origin) @ squares.T
+    if "cylinders/low" in held:  # as many squares around each as go there, and an even number
+        low, high = rectangles(held)
+        width = (high - low)[:, 0]
+        place = (theta - low[cylinder]) * ((2 * numpy.round(width * squares[0, 0] / 2)).clip(2) / width)[cylinder, None]
     return BOARD[numpy.floor(place).sum(1).astype(int) % 2]
 
 
-def cells_at(held, theta):
-    """The cell at each place, -1 where there is none, and how near its edge the place is, by its own side."""
-    low, high = held["cells/low"], held["cells/high"]
+def cells_in(held, theta, own, low, high):
+    """The cell of a rectangle at each place, -1 where there is none, and how near its edge the place is, by its own
+    side. `own` are the rectangle's."""
+    cell_low, cell_high = held["cells/low"], held["cells/high"]
     found, edge = numpy.full(len(theta), -1), numpy.zeros(len(theta))
-    order = numpy.round(numpy.log2((high - low)[:, 0] / (held["high"] - held["low"])[0]) * 8).astype(int)
+    order = numpy.round(numpy.log2((cell_high - cell_low)[own, 0] / (high - low)[0]) * 8).astype(int)
     for shift, turned in [(0, 0), *zip(held["seams/shift"], held["seams/turned"])]:
         for level in numpy.unique(order):
             left = numpy.flatnonzero(found < 0)
-            own, place = numpy.flatnonzero(order == level), shift + (-theta[left] if turned else theta[left])
-            size = (high - low)[own[0]]
-            columns = round((held["high"] - held["low"])[0] / size[0])
-            key = ((low[own] - held["low"]) / size).round().astype(numpy.int64) @ [1, columns]
-            whole = numpy.floor((place - held["low"]) / size).astype(numpy.int64)
-            at = numpy.searchsorted(key, whole @ [1, columns], sorter=numpy.argsort(key)).clip(0, len(own) - 1)
-            cell = own[numpy.argsort(key)[at]]
-            hit = (place >= low[cell]).all(1) & (place <= high[cell]).all(1)
+            alike, place = own[order == level], shift + (-theta[left] if turned else theta[left])
+            size = (cell_high - cell_low)[alike[0]]
+            columns = round((high - low)[0] / size[0])
+            key = ((cell_low[alike] - low) / size).round().astype(numpy.int64) @ [1, columns]
+            whole = numpy.floor((place - low) / size).astype(numpy.int64)
+            at = numpy.searchsorted(key, whole @ [1, columns], sorter=numpy.argsort(key)).clip(0, len(alike) - 1)
+            cell = alike[numpy.argsort(key)[at]]
+            hit = (place >= cell_low[cell]).all(1) & (place <= cell_high[cell]).all(1)
             found[left[hit]] = cell[hit]
-            edge[left[hit]] = (numpy.minimum(place - low[cell], high[cell] - place).min(1) / size.min())[hit]
+            edge[left[hit]] = (numpy.minimum(place - cell_low[cell], cell_high[cell] - place).min(1) / size.min())[hit]
+    return found, edge
+
+
+def cells_at(held, theta, cylinder):
+    """The same over all rectangles, of each place that of its cylinder."""
+    low, high = rectangles(held)
+    found, edge = numpy.full(len(theta), -1), numpy.zeros(len(theta))
+    middle = (held["cells/low"] + held["cells/high"])[:, 0] / 2
+    home = (numpy.searchsorted(low[:, 0], middle, side="right") - 1).clip(0)
+    for which in range(len(low)):
+        there, own = numpy.flatnonzero(cylinder == which), numpy.flatnonzero(home == which)
+        if len(there) and len(own):
+            found[there], edge[there] = cells_in(held, theta[there], own, low[which], high[which])
     return found, edge
 
 
@@ -189,10 +246,10 @@ def draw(files, pyplot):
         view = View(held)
         factor = held["cells/factor"]
         norm, colours = LogNorm(factor.min(), max(factor.max(), 1.01 * factor.min())), pyplot.get_cmap("viridis")
-        found, near = cells_at(held, view.theta)
+        found, near = cells_at(held, view.theta, view.cylinder)
         tint = 0.45 + 0.55 * colours(norm(factor))[found][:, :3]
         dark = numpy.where(near < 0.06, 0.55, 1.0)[:, None]
-        for panel, shown in ((left, checkers(held, view.theta)), (middle, tint * dark)):
+        for panel, shown in ((left, checkers(held, view.theta, view.cylinder)), (middle, tint * dark)):
             panel.imshow(view.picture(shown), origin="lower", extent=(0, PIXELS, 0, PIXELS))
             panel.axis("off")
         nodes = view.sees(held["nodes/points"])

@@ -209,8 +209,13 @@ static void print_map(const char *name, const BenchMap *all)
            surface->genus, surface->rims, map->triangles);
     printf("  repaired      %ld triangles dropped, %d rims closed, %d handles cut\n", map->dropped,
            map->closed, map->handles);
-    printf("  parameters    %.6g x %.6g, in %.3g s\n", chart->high[0] - chart->low[0],
-           chart->high[1] - chart->low[1], map->seconds);
+    printf("  parameters    ");
+    for (int c = 0; c < (chart->cylinders ? chart->cylinders->count : 1); c++) {
+        const RefCylinder *one = chart->cylinders ? chart->cylinders->cylinder + c : NULL;
+        const double *low = one ? one->low : chart->low, *high = one ? one->high : chart->high;
+        printf("%s%.6g x %.6g", c ? ", " : "", high[0] - low[0], high[1] - low[1]);
+    }
+    printf(", in %.3g s\n", map->seconds);
     printf("  angles        off by %.3g degrees (median), %.3g (95%%); %ld triangles turned over\n",
            map->angle_median, map->angle_95, map->flips);
     printf("  factor        %.3g to %.3g, median %.3g\n", all->factors[0], all->factors[2],

@@ -152,6 +152,41 @@ static void write_seams(BenchH5 *h5, const RefChart *chart)
     write_numbers(h5, group, "turned", H5T_STD_U8LE, chart->seams, 1, turned);
 }
 
+/* The rectangles of a surface with two handles and more, and what joins them. */
+static void write_cylinders(BenchH5 *h5, const RefCylinders *all)
+{
+    size_t count = (size_t)all->count, joints = (size_t)all->joints;
+    double(*low)[2] = sm_alloc(count, sizeof *low), (*high)[2] = sm_alloc(count, sizeof *high);
+    double(*shift)[2] = sm_alloc(joints, sizeof *shift);
+    double *begin = sm_alloc(joints, sizeof *begin), *end = sm_alloc(joints, sizeof *end);
+    int *from = sm_alloc(joints, sizeof *from), *to = sm_alloc(joints, sizeof *to);
+    unsigned char *up = sm_alloc(joints, sizeof *up);
+    for (size_t c = 0; c < count; c++) {
+        memcpy(low[c], all->cylinder[c].low, sizeof low[c]);
+        memcpy(high[c], all->cylinder[c].high, sizeof high[c]);
+    }
+    for (size_t j = 0; j < joints; j++) {
+        const RefJoint *joint = all->joint + j;
+        from[j] = joint->from;
+        to[j] = joint->to;
+        up[j] = joint->up;
+        begin[j] = joint->begin;
+        end[j] = joint->end;
+        memcpy(shift[j], joint->shift, sizeof shift[j]);
+    }
+    hid_t group = bench_h5_group(h5, h5->file, "cylinders");
+    write_numbers(h5, group, "low", H5T_IEEE_F64LE, all->count, 2, low);
+    write_numbers(h5, group, "high", H5T_IEEE_F64LE, all->count, 2, high);
+    group = bench_h5_group(h5, h5->file, "joints");
+    write_numbers(h5, group, "from", H5T_STD_I32LE, all->joints, 1, from);
+    write_numbers(h5, group, "to", H5T_STD_I32LE, all->joints, 1, to);
+    write_numbers(h5, group, "up", H5T_STD_U8LE, all->joints, 1, up);
+    write_numbers(h5, group, "begin", H5T_IEEE_F64LE, all->joints, 1, begin);
+    write_numbers(h5, group, "end", H5T_IEEE_F64LE, all->joints, 1, end);
+    write_numbers(h5, group, "shift", H5T_IEEE_F64LE, all->joints, 2, shift);
+    sm_free_all(low, high, shift, begin, end, from, to, up);
+}
+
 /* The triangles of the map, and those of their points that were given. */
 static void write_surface(BenchH5 *h5, const RefSurfaceMap *map)
 {
@@ -224,6 +259,7 @@ static void write_file(BenchH5 *h5, void *record)
     bench_h5_numbers(h5, h5->file, "angle_error", H5T_IEEE_F64LE, 2, angles);
     bench_h5_numbers(h5, h5->file, "flips", H5T_STD_I64LE, 0, &map->flips);
     write_seams(h5, &map->chart);
+    if (map->chart.cylinders) write_cylinders(h5, map->chart.cylinders);
     write_surface(h5, map);
     hid_t given = bench_h5_group(h5, h5->file, "given");
     write_numbers(h5, given, "parameters", H5T_IEEE_F64LE, map->vertices, 2, map->theta);

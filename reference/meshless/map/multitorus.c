@@ -8,9 +8,9 @@
 #include "holomorphic.h"
 #include "zeros.h"
 
-enum { TRIED = 40 };
-/* Cells for each zero that are as bad as 1 of a form's score. */
-static const double MANY_CELLS = 20;
+enum { TRIED = 40, MOST_TRIANGLES = 100000 };
+/* Cells for each zero that are as bad as 1 of a form's score; and that are too many. */
+static const double MANY_CELLS = 20, MOST_CELLS = 60;
 /* Of edges: a form has as many zeros as it should where none is below 0. */
 static const double LEAST_WEIGHT = 1e-4;
 
@@ -81,7 +81,7 @@ static bool try_all(const RefTriangulation *surface, const RefHolomorphic *basis
         if (!try(surface, basis, number + n * basis->count, &attempt)) continue;
         double cells = cells_of(&attempt.leaves.cylinders) / (2 * surface->genus - 2);
         double found = score[n] + cells / MANY_CELLS;
-        if (found >= least) {
+        if (found >= least || cells > MOST_CELLS) {
             attempt_free(&attempt);
             continue;
         }
@@ -93,17 +93,37 @@ static bool try_all(const RefTriangulation *surface, const RefHolomorphic *basis
     return isfinite(least);
 }
 
-SmCode ref_multitorus_unfold(RefTriangulation *surface, const char *name, double *step[2],
-                             RefLeaves *leaves, SmError *error)
+/* What forms of the surface are and the best of them; false where none will do. */
+static SmCode unfold(const RefTriangulation *surface, const char *name, Attempt *best, bool *found,
+                     SmError *error)
 {
     RefHolomorphic basis;
-    Attempt best;
     double *weight = ref_harmonic_weights(surface, LEAST_WEIGHT);
     SmCode code = ref_holomorphic_create(surface, weight, name, &basis, error);
     free(weight);
     if (code != SM_OK) return code;
-    bool found = try_all(surface, &basis, &best);
+    *found = try_all(surface, &basis, best);
     ref_holomorphic_free(&basis);
+    return SM_OK;
+}
+
+SmCode ref_multitorus_unfold(RefTriangulation *surface, const char *name, double *step[2],
+                             RefLeaves *leaves, SmError *error)
+{
+    Attempt best;
+    bool found;
+    SmCode code = unfold(surface, name, &best, &found, error);
+    RefTriangulation fine = {.triangles = 0};
+    for (long four = 4; code == SM_OK && !found && four * surface->triangles <= MOST_TRIANGLES;
+         four *= 4) {
+        RefTriangulation next = ref_triangulation_quarter(fine.triangles ? &fine : surface);
+        ref_triangulation_free(&fine);
+        fine = next;
+        ref_triangulation_delaunay(&fine);
+        code = unfold(&fine, name, &best, &found, error);
+    }
+    ref_triangulation_free(&fine);
+    if (code != SM_OK) return code;
     if (!found)
         return sm_fail(error, SM_INPUT,
                        "%s: a surface of genus %d, of whose maps each turns a triangle over: give "

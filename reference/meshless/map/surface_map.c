@@ -758,6 +758,24 @@ static SmCode map_mended(const char *name, RefSurfaceMap *map, SmError *error)
     return code;
 }
 
+/* With all its handles, or where they have no map, with as few as can be. */
+static SmCode map_whole(const char *name, RefSurfaceMap *map, SmError *error)
+{
+    RefTriangulation *surface = &map->surface->triangles;
+    if (surface->genus < 2 || surface->rims > 0) return map_mended(name, map, error);
+    RefTriangulation other = ref_triangulation_copy(surface);
+    SmCode code = map_mended(name, map, error);
+    int cut = code == SM_INPUT ? cut_handles(&other, largest_hole) : 0;
+    if (cut > 0) {
+        ref_triangulation_free(surface);
+        *surface = other;
+        map->handles += cut;
+        return map_mended(name, map, error);
+    }
+    ref_triangulation_free(&other);
+    return code;
+}
+
 /* Maps what a mesh has; `share` and `edges` say what is dropped and closed. */
 static SmCode map_mesh(const SmMesh *mesh, const char *name, double share, long edges,
                        RefSurfaceMap *map, SmError *error)
@@ -774,12 +792,7 @@ static SmCode map_mesh(const SmMesh *mesh, const char *name, double share, long 
             map->closed += ref_triangulation_close(surface, largest_hole, 0, 0);
         if (surface->rims == 1) /* which needs four corners */
             map->closed += ref_triangulation_close(surface, 0, 3, INFINITY);
-        code = map_mended(name, map, error);
-        if (code == SM_INPUT && surface->genus > 1) {
-            int cut = cut_handles(surface, largest_hole);
-            map->handles += cut;
-            if (cut) code = map_mended(name, map, error);
-        }
+        code = map_whole(name, map, error);
     }
     if (code == SM_OK && 100 * map->flips > map->triangles)
         code = sm_fail(error, SM_INPUT,

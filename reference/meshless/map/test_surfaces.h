@@ -120,7 +120,8 @@ static inline SmMesh tori_mesh(const Tori *all, int cells, unsigned *seed)
 
 static const Tori double_torus = {2, {{-1.1, 0}, {1.2, 0.3}}, {1, 1.2}, {0.42, 0.35}};
 static const Tori even_double_torus = {2, {{-1.1, 0}, {1.1, 0}}, {1, 1}, {0.42, 0.42}};
-static const Tori triple_torus = {3, {{-2.3, 0}, {0, 0.2}, {2.4, 0}}, {1, 1.1, 1}, {0.42, 0.42, 0.4}};
+static const Tori triple_torus = {
+    3, {{-2.3, 0}, {0, 0.2}, {2.4, 0}}, {1, 1.1, 1}, {0.42, 0.42, 0.4}};
 
 static inline void random_move(unsigned *seed, SmMesh *mesh)
 {

@@ -657,6 +657,67 @@ long ref_triangulation_split(RefTriangulation *surface)
     return count;
 }
 
+/* Of the four triangles those corners whose edges are the first and the second half of a corner's
+ * edge. */
+static int half_of(int corner, bool second)
+{
+    static const int half[2][3] = {{0, 4, 8}, {3, 7, 2}};
+    return 12 * (corner / 3) + half[second][corner % 3];
+}
+
+/* A vertex in the middle of every edge, by corners. */
+static int *halve_all(const RefTriangulation *surface, RefTriangulation *four)
+{
+    int *middle = sm_alloc(3 * (size_t)surface->triangles, sizeof *middle);
+    for (int c = 0; c < 3 * surface->triangles; c++) {
+        if (surface->twin[c] > c) {
+            const double *a = surface->position[surface->vertex[c]];
+            const double *b = surface->position[surface->vertex[ref_corner_next(c)]];
+            middle[c] = (int)four->vertices;
+            for (int d = 0; d < 3; d++) four->position[four->vertices][d] = (a[d] + b[d]) / 2;
+            four->source[four->vertices++] = -1;
+        } else {
+            middle[c] = middle[surface->twin[c]];
+        }
+    }
+    return middle;
+}
+
+RefTriangulation ref_triangulation_quarter(const RefTriangulation *surface)
+{
+    /* of the corners of the four triangles: a vertex of the one, or the middle of its edge; which
+     * of its edges their own are half of, in direction; and inner edges' twins */
+    static const int at[12] = {0, 3, 5, 3, 1, 4, 5, 4, 2, 3, 4, 5};
+    static const int along[12] = {0, 1, 2, 0, 1, 2, 0, 1, 2, 2, 0, 1};
+    static const int inner[3][2] = {{1, 11}, {5, 9}, {6, 10}};
+    size_t triangles = (size_t)surface->triangles, corners = 12 * triangles;
+    size_t vertices = (size_t)surface->vertices, most = vertices + 3 * triangles / 2;
+    RefTriangulation four = {.triangles = 4 * surface->triangles,
+                             .vertices = surface->vertices,
+                             .vertex = sm_alloc(corners, sizeof(int)),
+                             .twin = sm_alloc(corners, sizeof(int)),
+                             .length = sm_alloc(corners, sizeof(double)),
+                             .source = sm_alloc(most, sizeof(int)),
+                             .position = sm_alloc(most, sizeof(double[3])),
+                             .corner = sm_alloc(most, sizeof(int))};
+    memcpy(four.source, surface->source, vertices * sizeof *four.source);
+    memcpy(four.position, surface->position, vertices * sizeof *four.position);
+    int *middle = halve_all(surface, &four);
+    for (int c = 0; c < (int)corners; c++) {
+        int first = 3 * (c / 12), which = at[c % 12];
+        four.vertex[c] = which < 3 ? surface->vertex[first + which] : middle[first + which - 3];
+        four.length[c] = surface->length[first + along[c % 12]] / 2;
+        four.corner[four.vertex[c]] = c;
+    }
+    for (int c = 0; c < 3 * surface->triangles; c++)
+        for (int k = 0; k < 2; k++) four.twin[half_of(c, k)] = half_of(surface->twin[c], !k);
+    for (int t = 0; t < surface->triangles; t++)
+        for (int k = 0; k < 3; k++) join(&four, 12 * t + inner[k][0], 12 * t + inner[k][1]);
+    free(middle);
+    count_rims(&four);
+    return four;
+}
+
 RefTriangulation ref_triangulation_copy(const RefTriangulation *surface)
 {
     RefTriangulation copy = *surface;

@@ -95,6 +95,10 @@ int ref_triangulation_insert(RefTriangulation *surface, int triangle, const doub
  * first sheet and 3 * triangles + c of the second. The caller frees. */
 RefTriangulation ref_triangulation_twice(const RefTriangulation *surface, const bool *cut);
 
+/* A closed surface with each triangle in four that are similar to it: the same surface, with a
+ * vertex in the middle of every edge. The caller frees. */
+RefTriangulation ref_triangulation_quarter(const RefTriangulation *surface);
+
 /* The caller frees. */
 RefTriangulation ref_triangulation_copy(const RefTriangulation *surface);
 
