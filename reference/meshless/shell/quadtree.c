@@ -188,7 +188,7 @@ static void plant(const RefChart *chart, int across, RefQuadtree *tree)
 
 static SmCode check(const RefChart *chart, int across, SmError *error)
 {
-    double cells = 0, low[2], side[2];
+    double cells = 0, low[2], side[2] = {0};
     for (int n = 0; n < rectangles_of(chart); n++) {
         sides_of(chart, n, low, side);
         if (!(side[0] > 0 && side[1] > 0 && across > 0))
