@@ -2,12 +2,14 @@
  * section 4.2; Gu and Yau 2003).
  *
  * Every surface here gets a flat metric that is conformal to its own, and cut open it is a
- * rectangle (chart.h):
+ * rectangle (chart.h), or several:
  *     - a disk has four corners on its rim, and a part of the rim along each side;
  *     - an annulus (a tube) closes around the first axis, with rims above and below;
  *     - a cap, a disk that bulges, does so, too, but is folded above;
  *     - a torus closes around both axes, with a shift;
- *     - a sphere is folded above and below.
+ *     - a sphere is folded above and below;
+ *     - a multitorus, a closed surface of genus 2 and more, is as many cylinders as 3 genus - 3, in
+ *       a row in the plane, that are joined along intervals (multitorus.h, body/cylinders.h).
  * Taken twice and glued along a cut, what has a fold is an annulus or a torus, of which it is the
  * half that half a turn leaves. Harmonic one-forms are found on these (harmonic.h): their energies
  * say the rectangle's shape, and their integrals are the parameters. Edges of the triangulation are
@@ -49,13 +51,15 @@ typedef struct {
 /* Maps the surface. Pieces of up to 1% of the triangles are dropped. Rims are closed, each with a
  * vertex in its middle but those of two edges, that are shorter than a tenth of the root of the
  * area, or than a half if they have three edges or there are more than a map may have; and an only
- * rim of three edges, however long. Of handles that are too many, lines
- * around them or through their tunnels are cut that are shorter than a half, and both sides closed.
- * The mesh has passed sm_mesh_prepare(), and is no longer needed afterwards; `name` is for
- * messages. Up to three factorisations of [vertices], for a cap or a sphere one of them and one of
- * [2 * vertices]; as many again where a triangle is turned over at first. The caller frees. Errors:
- * triangulation.h's and solver.h's; SM_INPUT, a surface of another genus or of more rims, and one
- * whose parts stick out so far that over 1% of the triangles collapse in double precision. */
+ * rim of three edges, however long. Of closed surfaces handles beyond the first are cut where a
+ * line around them or through their tunnel is shorter than a tenth, and both sides closed; up to a
+ * half where no map of a multitorus is found; of others all handles up to a half. The mesh has
+ * passed sm_mesh_prepare(), and is no longer needed afterwards; `name` is for messages. Up to three
+ * factorisations of [vertices], for a cap or a sphere one of them and one of [2 * vertices]; as
+ * many again where a triangle is turned over at first. The caller frees. Errors: triangulation.h's
+ * and solver.h's; SM_INPUT, a surface with handles and rims or of more than two rims, a multitorus
+ * of whose maps each turns a triangle over, and a surface whose parts stick out so far that over 1%
+ * of the triangles collapse in double precision. */
 SmCode ref_surface_map_create(const SmMesh *mesh, const char *name, RefSurfaceMap *map,
                               SmError *error);
 
@@ -79,15 +83,15 @@ void ref_surface_map_free(RefSurfaceMap *map);
 const RefTriangulation *ref_surface_map_triangles(const RefSurfaceMap *map);
 
 /* One of them in the plane, counter-clockwise unless it is turned over: its first corner in the
- * rectangle, the others next to it, maybe beyond a seam; L at its corners; and how far its angles
- * there are off, in degrees. */
+ * rectangle, or its middle in one of several, the rest next to it, maybe beyond a seam; L at its
+ * corners; and how far its angles there are off, in degrees. */
 typedef struct {
     double theta[3][2], factor[3], off[3];
 } RefMapTriangle;
 
 RefMapTriangle ref_surface_map_triangle(const RefSurfaceMap *map, long triangle);
 
-/* disk, cap, annulus, torus or sphere. */
+/* disk, cap, annulus, torus, sphere or multitorus. */
 const char *ref_map_kind_name(RefMapKind kind);
 
 #endif
