@@ -101,10 +101,10 @@ void ref_holomorphic_form(const RefTriangulation *surface, const RefHolomorphic 
 
 /* How bad a form is beside the variance of log L: its energy for each of the basis's. Forms of
  * little energy have few and wide cylinders. */
-static const double ENERGY = 0.05;
+static const double ENERGY = 0.1;
 
 /* Of forms that are looked for: every so many triangles, with two steps of each basis form. */
-enum { BEAM = 40, MOST_LOOKED_AT = 4000 };
+enum { BEAM = 80, MOST_LOOKED_AT = 4000 };
 typedef struct {
     const RefHolomorphic *basis;
     long triangles, stride;

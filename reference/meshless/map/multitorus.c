@@ -4,13 +4,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../shell/quadtree.h"
 #include "harmonic.h"
 #include "holomorphic.h"
 #include "zeros.h"
 
-enum { TRIED = 40, MOST_TRIANGLES = 100000 };
-/* Cells for each zero that are as bad as 1 of a form's score; and that are too many. */
-static const double MANY_CELLS = 20, MOST_CELLS = 60;
+enum { TRIED = 80, MOST_TRIANGLES = 100000 };
+/* Cells for each zero that are as bad as 1 of a form's score; and roots of each cylinder that are
+ * too many. */
+static const double MANY_CELLS = 20, MOST_ROOTS = 100;
 /* Of edges: a form has as many zeros as it should where none is below 0. */
 static const double LEAST_WEIGHT = 1e-4;
 
@@ -58,15 +60,29 @@ static bool try(const RefTriangulation *surface, const RefHolomorphic *basis, co
     return made;
 }
 
-/* The cells of cylinders that are square. */
+static double one(const void *data, const double low[2], const double high[2])
+{
+    (void)data, (void)low, (void)high;
+    return 1;
+}
+
+/* The cells of the coarsest balanced quadtree: a low cylinder needs many, and small ones beside it.
+ * Infinite where there are too many. */
 static double cells_of(const RefCylinders *cylinders)
 {
-    double cells = 0;
+    RefChart chart = {.mean = one, .cylinders = cylinders};
+    RefQuadtree tree;
+    double roots = 0;
     for (int c = 0; c < cylinders->count; c++) {
-        const RefCylinder *one = cylinders->cylinder + c;
-        double shape = (one->high[1] - one->low[1]) / (one->high[0] - one->low[0]);
-        cells += rint(fmax(shape, 1 / shape));
+        const RefCylinder *in = cylinders->cylinder + c;
+        double shape = (in->high[1] - in->low[1]) / (in->high[0] - in->low[0]);
+        roots += fmax(shape, 1 / shape);
     }
+    if (roots > MOST_ROOTS * cylinders->count ||
+        ref_quadtree_build(&chart, 1, INFINITY, &tree, NULL) != SM_OK)
+        return INFINITY;
+    double cells = (double)tree.leaves;
+    ref_quadtree_free(&tree);
     return cells;
 }
 
@@ -81,7 +97,7 @@ static bool try_all(const RefTriangulation *surface, const RefHolomorphic *basis
         if (!try(surface, basis, number + n * basis->count, &attempt)) continue;
         double cells = cells_of(&attempt.leaves.cylinders) / (2 * surface->genus - 2);
         double found = score[n] + cells / MANY_CELLS;
-        if (found >= least || cells > MOST_CELLS) {
+        if (found >= least) {
             attempt_free(&attempt);
             continue;
         }
@@ -114,7 +130,8 @@ SmCode ref_multitorus_unfold(RefTriangulation *surface, const char *name, double
     bool found;
     SmCode code = unfold(surface, name, &best, &found, error);
     RefTriangulation fine = {.triangles = 0};
-    for (long four = 4; code == SM_OK && !found && four * surface->triangles <= MOST_TRIANGLES;
+    for (long four = 4;
+         code == SM_OK && !found && four * surface->triangles <= MOST_TRIANGLES / surface->genus;
          four *= 4) {
         RefTriangulation next = ref_triangulation_quarter(fine.triangles ? &fine : surface);
         ref_triangulation_free(&fine);
