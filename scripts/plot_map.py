@@ -2,8 +2,9 @@
 """Draws conformal maps that `shapebench info MESH --map -o FILE.h5` wrote, a row each: the surface under a
 checkerboard of its parameters, under the quadtree's cells with the nodes in them, and the plane of parameters.
 
-The board goes on across seams, but not from one cylinder of a surface with two handles and more to another. Its squares are square on the surface where the map keeps angles; how large they are
-there, and the colours of cells, say what the conformal factor L is.
+The board goes on across seams, but not from one cylinder of a surface with two handles and more to another. Its
+squares are square on the surface where the map keeps angles; how large they are there, and the colours of cells, say
+what the conformal factor L is.
 
 Needs Debian's python3-h5py and python3-matplotlib (scripts/setup). Exit codes: 0 drawn; 2 wrong usage; 3 not a
 map, or damaged, or a package is missing; 4 cannot be written."""
@@ -66,9 +67,11 @@ def check(held):
         "nodes": inside(held["nodes/points"], box, 0.02) and inside(held["nodes/parameters"], rectangle, 0.001),
     }
     if "cylinders/low" in held:
-        ends, own = held["cylinders/high"] - held["cylinders/low"], len(held["cylinders/low"])
-        right["cylinders"] = own > 0 and (ends > 1e-9 * side).all() and (numpy.diff(held["cylinders/low"][:, 0]) > 0).all()
-        right["joints"] = all(((0 <= held[name]) & (held[name] < own)).all() for name in ("joints/from", "joints/to"))
+        first, last, own = held["cylinders/low"], held["cylinders/high"], len(held["cylinders/low"])
+        numbers = numpy.stack([held["joints/from"], held["joints/to"]])
+        right["cylinders"] = (own > 0 and (last - first > 1e-9 * side).all() and (first[1:, 0] > last[:-1, 0]).all()
+                              and inside(first, rectangle, 0.001) and inside(last, rectangle, 0.001))
+        right["joints"] = ((numbers >= 0) & (numbers < own)).all() and inside(held["joints/shift"], rectangle - low, 3)
     wrong = [name for name, whole in right.items() if not whole]
     if wrong:
         raise ValueError(f"{', '.join(wrong)}: not those of a map")

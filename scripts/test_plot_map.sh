@@ -24,8 +24,31 @@ assert dark > 0.2, f"no surface: {dark}"
 assert 0.3 < blue / dark < 0.7, f"no board: {blue} of {dark}"
 PYTHON
 refuses_others block.h5
+/usr/bin/python3 - <<'PYTHON'
+there = {(i, j, 0) for i in range(5) for j in range(3)} - {(1, 1, 0), (3, 1, 0)}  # cubes around two holes
+with open("two.obj", "w") as file:
+    for n in range(48):
+        print("v", n % 6, n // 6 % 4, n // 24, file=file)
+    for cube in there:
+        for d in range(3):
+            for side in (0, 1):
+                beside = tuple(c + (e == d) * (2 * side - 1) for e, c in enumerate(cube))
+                if beside in there:
+                    continue
+                a, b = [e for e in range(3) if e != d]
+                square = [[c + (side if e == d else 0) for e, c in enumerate(cube)] for _ in range(4)]
+                for place, (u, v) in zip(square, ((0, 0), (1, 0), (1, 1), (0, 1))):
+                    place[a] += u
+                    place[b] += v
+                if side == (d == 1):
+                    square.reverse()
+                print("f", *(1 + x + 6 * y + 24 * z for x, y, z in square), file=file)
+PYTHON
+"$program" info two.obj --map --nodes 60 -o two.h5 --quiet >/dev/null
+"$plot" two.h5 >said
+grep -qx 'wrote two.png' said || wrong "of two holes it says $(cat said)"
 change() {
-    cp block.h5 changed.h5
+    cp "${2-block}.h5" changed.h5
     /usr/bin/python3 -c "import h5py
 with h5py.File('changed.h5', 'r+') as f: $1"
     refused 3 changed.h5
@@ -36,4 +59,8 @@ change "f['cells/factor'][0] = float('nan')"
 change "f.attrs['high'] = f.attrs['low']"
 change "f.attrs['angle_error'] = b'text'"
 change "f['nodes/points'][0] = 1e9"
+change "f['cylinders/high'][0] = f['cylinders/low'][0]" two
+change "f['joints/to'][0] = 3" two
+change "f['joints/shift'][0] = 1e9" two
+change "del f['joints/begin']" two
 interrupted block.h5
