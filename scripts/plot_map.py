@@ -2,7 +2,7 @@
 """Draws conformal maps that `shapebench info MESH --map -o FILE.h5` wrote, a row each: the surface under a
 checkerboard of its parameters, under the quadtree's cells with the nodes in them, and the plane of parameters.
 
-The board goes on across seams, but not from one cylinder of a surface with two handles and more to another. Its
+The board goes on across seams, but not from one cylinder of a surface with two handles or holes to another. Its
 squares are square on the surface where the map keeps angles; how large they are there, and the colours of cells, say
 what the conformal factor L is.
 
@@ -21,7 +21,7 @@ ARRAYS = {  # dataset: kind of its numbers and its shape, whose letters stand fo
     "surface/factor": ("f", "v"), "cells/low": ("f", "c2"), "cells/high": ("f", "c2"), "cells/factor": ("f", "c"),
     "nodes/parameters": ("f", "n2"), "nodes/points": ("f", "n3"),
 }
-CYLINDERS = {  # of a surface with two handles and more
+CYLINDERS = {  # of a surface with two handles or holes and more
     "cylinders/low": ("f", "k2"), "cylinders/high": ("f", "k2"), "joints/from": ("i", "j"), "joints/to": ("i", "j"),
     "joints/up": ("u", "j"), "joints/begin": ("f", "j"), "joints/end": ("f", "j"), "joints/shift": ("f", "j2"),
 }

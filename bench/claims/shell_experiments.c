@@ -199,9 +199,10 @@ SmCode bench_shell_seam(const BenchExperiment *of, SmError *error)
     if (map.kind == REF_MAP_DISK)
         code = sm_fail(error, SM_INPUT, "'%.60s' is a sheet, without a seam", of->scene->name);
     else if (map.chart.cylinders)
-        code = sm_fail(error, SM_INPUT,
-                       "'%.60s' has several handles, whose seams are where its form's zeros are",
-                       of->scene->name);
+        code = sm_fail(
+            error, SM_INPUT,
+            "'%.60s' has several handles or holes, whose seams are where its form's zeros are",
+            of->scene->name);
     else
         code = compare_shells(of, &map.chart, error);
     ref_surface_map_free(&map);

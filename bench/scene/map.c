@@ -152,7 +152,7 @@ static void write_seams(BenchH5 *h5, const RefChart *chart)
     write_numbers(h5, group, "turned", H5T_STD_U8LE, chart->seams, 1, turned);
 }
 
-/* The rectangles of a surface with two handles and more, and what joins them. */
+/* The rectangles of a surface with two handles or holes and more, and what joins them. */
 static void write_cylinders(BenchH5 *h5, const RefCylinders *all)
 {
     size_t count = (size_t)all->count, joints = (size_t)all->joints;

@@ -90,7 +90,7 @@ static SmCode make_breaking(const RefMeshlessOptions *options, SmEngine *engine,
     if (engine->body.map.chart.cylinders)
         return sm_fail(
             error, SM_INPUT,
-            "strength: a closed surface with two handles or more does not crack yet; leave "
+            "strength: a surface with two handles or two holes does not crack yet; leave "
             "strength out, or cut it open");
     engine->body.breaking = sm_alloc(1, sizeof *engine->body.breaking);
     return ref_breaking_create(&engine->body.sheet, &cracked, &fracture, engine->body.breaking,

@@ -117,12 +117,13 @@ static int hop(const RefCylinders *cylinders, int at, double theta[2], double wa
     return joint ? joint->to : -1;
 }
 
-void ref_cylinders_walk(const RefCylinders *cylinders, double theta[2], const double way[2])
+bool ref_cylinders_walk(const RefCylinders *cylinders, double theta[2], const double way[2])
 {
     double left[2] = {way[0], way[1]}, moved[2];
     int at = ref_cylinders_at(cylinders, theta);
     for (int n = 0; n < MOST_JOINTS_PASSED && at >= 0; n++)
         at = hop(cylinders, at, theta, left, moved);
+    return left[1] == 0;
 }
 
 /* ---- images */

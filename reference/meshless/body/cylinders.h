@@ -3,9 +3,10 @@
  *
  * Leaves through the form's zeros cut a closed surface of genus g into 3 g - 3 cylinders at most.
  * In the plane of the form's integral each is a rectangle whose left and right sides are one line.
- * An interval of its upper side between zeros goes on, moved by a constant, as one of some
- * cylinder's lower side. Around a zero the plane has two whole turns, so that what is beyond it
- * differs by the side on which a straight line passes. */
+ * A side is a rim of the surface, or its intervals go on elsewhere: an interval of its upper side
+ * between zeros goes on, moved by a constant, as one of some cylinder's lower side. Around a zero
+ * the plane has two whole turns, so that what is beyond it differs by the side on which a straight
+ * line passes. */
 #ifndef REF_CYLINDERS_H
 #define REF_CYLINDERS_H
 
@@ -39,8 +40,9 @@ int ref_cylinders_at(const RefCylinders *cylinders, const double theta[2]);
 bool ref_cylinders_zero(const RefCylinders *cylinders, const double low[2], const double high[2]);
 
 /* Goes straight from a place of a rectangle: theta becomes the place where that ends, in its
- * rectangle. A way that meets a zero passes it on one side. O(joints passed). */
-void ref_cylinders_walk(const RefCylinders *cylinders, double theta[2], const double way[2]);
+ * rectangle. A way that meets a zero passes it on one side. False, and theta there, where it meets
+ * a rim. O(joints passed). */
+bool ref_cylinders_walk(const RefCylinders *cylinders, double theta[2], const double way[2]);
 
 /* Where straight lines from a place of a rectangle lead to in a box around it: shifts by which the
  * place gets into the planes of cylinders there, the first one zero. */

@@ -254,13 +254,13 @@ void ref_harmonic_loops(const RefTriangulation *surface, double **form)
     sm_free_all(barred, order, from, back);
 }
 
-double *ref_harmonic_crossing(const RefTriangulation *surface)
+double *ref_harmonic_crossing(const RefTriangulation *surface, int from, int to)
 {
     long corners = 3 * surface->triangles;
     int end[2] = {-1, -1};
     double *form = sm_alloc((size_t)corners, sizeof *form);
     for (int c = 0; c < corners; c++)
-        if (surface->rim[c] == 0 || surface->rim[c] == 1) end[surface->rim[c]] = c;
+        if (surface->rim[c] == from || surface->rim[c] == to) end[surface->rim[c] == to] = c;
     int *back = triangle_tree(surface, end[0] / 3, NULL);
     form[end[1]] -= 1;
     cross_back(surface, back, end[1] / 3, 1, form);

@@ -42,7 +42,7 @@ void ref_harmonic_loops(const RefTriangulation *surface, double **form);
 
 /* A closed form of whole numbers: 1 for edges that a row of triangles from one rim to another
  * crosses. The caller frees. */
-double *ref_harmonic_crossing(const RefTriangulation *surface);
+double *ref_harmonic_crossing(const RefTriangulation *surface, int from, int to);
 
 /* The function of which a form is the differences, from 0 at vertex `root`: along a tree of edges,
  * so that it leaps elsewhere where the form has periods. The caller frees. */

@@ -9,7 +9,11 @@
 
 void ref_holomorphic_free(RefHolomorphic *basis)
 {
-    for (int k = 0; k < basis->count; k++) free(basis->form[k]);
+    for (int k = 0; k < basis->count; k++) {
+        if (basis->dual != basis->form) free(basis->dual[k]);
+        free(basis->form[k]);
+    }
+    if (basis->dual != basis->form) free(basis->dual);
     sm_free_all(basis->form, basis->star);
     *basis = (RefHolomorphic){.count = 0};
 }
@@ -47,7 +51,7 @@ static bool find_star(const RefTriangulation *surface, const double *energy, Ref
     basis->star = sm_alloc(size, sizeof *basis->star);
     for (int i = 0; i < count; i++)
         for (int j = 0; j < count; j++)
-            wedge[i * count + j] = ref_harmonic_wedge(surface, basis->form[i], basis->form[j]);
+            wedge[i * count + j] = ref_harmonic_wedge(surface, basis->form[i], basis->dual[j]);
     for (int j = 0; j < count && found; j++) {
         memcpy(left, wedge, size * sizeof *left);
         for (int i = 0; i < count; i++) right[i] = energy[i * count + j];
@@ -58,25 +62,70 @@ static bool find_star(const RefTriangulation *surface, const double *energy, Ref
     return found;
 }
 
+static int longest_rim(const RefTriangulation *surface)
+{
+    double *length = sm_alloc((size_t)surface->rims, sizeof *length);
+    int longest = 0;
+    for (long c = 0; c < 3 * surface->triangles; c++)
+        if (surface->rim[c] >= 0) length[surface->rim[c]] += surface->length[c];
+    for (int r = 1; r < surface->rims; r++)
+        if (length[r] > length[longest]) longest = r;
+    free(length);
+    return longest;
+}
+
+/* Forms of a surface with rims, and those of their stars. */
+static SmCode between_rims(const RefTriangulation *surface, const double *weight,
+                           RefHolomorphic *basis, SmError *error)
+{
+    size_t corners = 3 * (size_t)surface->triangles;
+    bool *held = sm_alloc((size_t)surface->vertices, sizeof *held);
+    basis->dual = sm_alloc((size_t)basis->count, sizeof *basis->dual);
+    int longest = longest_rim(surface);
+    for (int k = 0; k < basis->count; k++) {
+        int rim = k < longest ? k : k + 1;
+        basis->form[k] = sm_alloc(corners, sizeof **basis->form);
+        basis->dual[k] = ref_harmonic_crossing(surface, longest, rim);
+        for (int c = 0; c < (int)corners; c++) {
+            int from = surface->corner[surface->vertex[c]];
+            int to = surface->corner[surface->vertex[ref_corner_next(c)]];
+            basis->form[k][c] = (surface->rim[to] == rim) - (surface->rim[from] == rim);
+            held[surface->vertex[c]] = surface->rim[from] >= 0;
+        }
+    }
+    SmCode code = ref_harmonic_solve(surface, weight, held, basis->count, basis->form, error);
+    if (code == SM_OK)
+        code = ref_harmonic_solve(surface, weight, NULL, basis->count, basis->dual, error);
+    free(held);
+    return code;
+}
+
 SmCode ref_holomorphic_create(const RefTriangulation *surface, const double *weight,
                               const char *name, RefHolomorphic *basis, SmError *error)
 {
-    int count = 2 * surface->genus;
+    int count = surface->rims ? surface->rims - 1 : 2 * surface->genus;
+    SmCode code;
     *basis = (RefHolomorphic){.count = count, .form = sm_alloc((size_t)count, sizeof(double *))};
-    ref_harmonic_loops(surface, basis->form);
-    SmCode code = ref_harmonic_solve(surface, weight, NULL, count, basis->form, error);
+    if (surface->rims) {
+        code = between_rims(surface, weight, basis, error);
+    } else {
+        basis->dual = basis->form;
+        ref_harmonic_loops(surface, basis->form);
+        code = ref_harmonic_solve(surface, weight, NULL, count, basis->form, error);
+    }
     if (code == SM_OK) {
         double *energy = sm_alloc((size_t)count * (size_t)count, sizeof *energy);
         for (int i = 0; i < count; i++)
             for (int j = 0; j < count; j++)
                 energy[i * count + j] =
                     ref_harmonic_product(surface, weight, basis->form[i], basis->form[j]);
-        shorten(surface, basis, energy);
+        if (surface->rims == 0) shorten(surface, basis, energy);
         if (!find_star(surface, energy, basis))
-            code = sm_fail(error, SM_INPUT,
-                           "%s: the forms of its %d handles depend on one another: give it more "
-                           "triangles",
-                           name, surface->genus);
+            code =
+                sm_fail(error, SM_INPUT,
+                        "%s: the forms of its handles or rims depend on one another: give it more "
+                        "triangles",
+                        name);
         free(energy);
     }
     if (code != SM_OK) ref_holomorphic_free(basis);
@@ -93,7 +142,7 @@ void ref_holomorphic_form(const RefTriangulation *surface, const RefHolomorphic 
         for (int j = 0; j < basis->count; j++)
             star -= basis->star[k * basis->count + j] * number[j];
         for (long c = 0; c < corners; c++) {
-            step[0][c] += star * basis->form[k][c];
+            step[0][c] += star * basis->dual[k][c];
             step[1][c] += number[k] * basis->form[k][c];
         }
     }
@@ -103,13 +152,19 @@ void ref_holomorphic_form(const RefTriangulation *surface, const RefHolomorphic 
  * little energy have few and wide cylinders. */
 static const double ENERGY = 0.1;
 
+/* From which numbers between rims start: functions differ by a share of this. */
+enum { LEVEL = 16 };
+
 /* Of forms that are looked for: every so many triangles, with two steps of each basis form. */
 enum { BEAM = 80, MOST_LOOKED_AT = 4000 };
 typedef struct {
     const RefHolomorphic *basis;
     long triangles, stride;
-    double *area, (*step)[2]; /* [triangles], [count][triangles] */
-    int choices, *number;     /* [BEAM][count] the best, best first */
+    double *area, (*step)[2], (*dual)[2]; /* [triangles], [count][triangles] */
+    bool open;                            /* has rims */
+    long edges;                           /* that leave rims */
+    double *leave;        /* [count][edges] steps along them, turned about on the longest rim */
+    int choices, *number; /* [BEAM][count] the best, best first */
     double score[BEAM];
 } Choice;
 
@@ -125,8 +180,9 @@ static double judge(const Choice *choice, const int *number)
         double x[2] = {0}, y[2] = {0};
         for (int k = 0; k < count; k++) {
             const double *step = choice->step[k * choice->triangles + t];
+            const double *dual = choice->dual[k * choice->triangles + t];
             for (int d = 0; d < 2; d++) {
-                x[d] += star[k] * step[d];
+                x[d] += star[k] * dual[d];
                 y[d] += number[k] * step[d];
             }
         }
@@ -139,7 +195,8 @@ static double judge(const Choice *choice, const int *number)
     }
     free(star);
     energy *= (double)choice->stride;
-    return square / whole - sum / whole * (sum / whole) + energy / count * ENERGY;
+    return square / whole - sum / whole * (sum / whole) +
+           (choice->open ? 0 : energy / count * ENERGY);
 }
 
 /* Whether whole numbers are not all 0, have no common divisor, and the first of them is positive:
@@ -159,11 +216,45 @@ static bool is_one(int count, const int *number)
     return common == 1 && first > 0;
 }
 
+/* Whether the function falls everywhere away from rims, and rises from the longest one, so that
+ * none of its zeros is on a rim. */
+static bool falls(const Choice *choice, const int *number)
+{
+    for (long e = 0; e < choice->edges; e++) {
+        double step = 0;
+        for (int k = 0; k < choice->basis->count; k++)
+            step += number[k] * choice->leave[k * choice->edges + e];
+        if (!(step < 0)) return false;
+    }
+    return true;
+}
+
+/* The edges that leave rims. */
+static void find_edges(const RefTriangulation *surface, Choice *choice)
+{
+    size_t count = (size_t)choice->basis->count;
+    int longest = longest_rim(surface);
+    for (int pass = 0; pass < 2; pass++) {
+        if (pass) choice->leave = sm_alloc(count * (size_t)choice->edges, sizeof(double));
+        long edge = 0;
+        for (int c = 0; c < 3 * surface->triangles; c++) {
+            int rim = surface->rim[surface->corner[surface->vertex[c]]];
+            int to = surface->rim[surface->corner[surface->vertex[ref_corner_next(c)]]];
+            if (rim < 0 || to >= 0) continue;
+            for (size_t k = 0; pass && k < count; k++)
+                choice->leave[k * (size_t)choice->edges + (size_t)edge] =
+                    (rim == longest ? -1 : 1) * choice->basis->form[k][c];
+            edge++;
+        }
+        choice->edges = edge;
+    }
+}
+
 /* Puts a choice where it belongs among the best; whether it is one and new. */
 static bool consider(Choice *choice, const int *number)
 {
     size_t count = (size_t)choice->basis->count, bytes = count * sizeof *number;
-    if (!is_one((int)count, number)) return false;
+    if (choice->open ? !falls(choice, number) : !is_one((int)count, number)) return false;
     for (int n = 0; n < choice->choices; n++)
         if (!memcmp(choice->number + (size_t)n * count, number, bytes)) return false;
     double score = judge(choice, number);
@@ -190,8 +281,10 @@ static void search(Choice *choice)
     size_t size = (size_t)BEAM * (size_t)count;
     int *from = sm_alloc(size, sizeof *from), *next = sm_alloc((size_t)count, sizeof *next);
     bool better = true;
+    for (int k = 0; k < count; k++) next[k] = LEVEL;
+    if (choice->open) consider(choice, next);
     for (int round = 0; round < 2 * count && better; round++) {
-        int known = round == 0 ? 1 : choice->choices; /* none first */
+        int known = choice->choices ? choice->choices : 1; /* zeros first */
         memcpy(from, choice->number, size * sizeof *from);
         better = false;
         for (int n = 0; n < known; n++)
@@ -212,20 +305,25 @@ int ref_holomorphic_choose(const RefTriangulation *surface, const RefHolomorphic
         .basis = basis, .stride = stride, .triangles = (surface->triangles + stride - 1) / stride};
     size_t count = (size_t)basis->count, triangles = (size_t)choice.triangles;
     choice.area = sm_alloc(triangles, sizeof *choice.area);
+    choice.open = surface->rims > 0;
+    if (choice.open) find_edges(surface, &choice);
     choice.step = sm_alloc(count * triangles, sizeof *choice.step);
+    choice.dual = sm_alloc(count * triangles, sizeof *choice.dual);
     choice.number = sm_alloc(BEAM * count, sizeof *choice.number);
     for (size_t t = 0; t < triangles; t++) {
         size_t c = 3 * t * (size_t)stride;
         double cotangent[3];
         choice.area[t] = ref_triangle_shape(surface->length + c, cotangent) / 2;
         for (size_t k = 0; k < count; k++)
-            for (size_t d = 0; d < 2; d++)
+            for (size_t d = 0; d < 2; d++) {
                 choice.step[k * triangles + t][d] = basis->form[k][c + d];
+                choice.dual[k * triangles + t][d] = basis->dual[k][c + d];
+            }
     }
     search(&choice);
     int found = choice.choices < wanted ? choice.choices : wanted;
     memcpy(number, choice.number, (size_t)found * count * sizeof *number);
     memcpy(score, choice.score, (size_t)found * sizeof *score);
-    sm_free_all(choice.area, choice.step, choice.number);
+    sm_free_all(choice.area, choice.step, choice.dual, choice.leave, choice.number);
     return found;
 }

@@ -157,41 +157,44 @@ static bool find_arcs(Trace *trace, int zeros, const int *zero)
     return true;
 }
 
-/* Goes straight up from a place in a triangle to the next leaf above; writes the height and how far
- * along its arc that is, and returns the arc, or -1. */
-static int climb(const Trace *trace, int triangle, const double from[2], double *height,
+/* Goes straight up (1) or down (-1) from a place in a triangle to the next leaf or rim; writes how
+ * far that is and how far along its arc, and returns the arc, -1 of a rim, or -2 where there is
+ * none. What goes down goes up in the plane that is turned by half a turn. */
+static int climb(const Trace *trace, int triangle, int way, const double from[2], double *height,
                  double *along)
 {
-    double at[2] = {from[0], from[1]}, place[3][2], floor_of = from[1] + trace->near;
+    double at[2] = {way * from[0], way * from[1]}, place[3][2], floor_of = at[1] + trace->near;
     *height = 0;
     for (long n = 0; n < 10 * trace->surface->triangles; n++) {
         double top = INFINITY;
         int found = -1, out = -1;
         for (int p = trace->first[triangle]; p >= 0; p = trace->piece[p].next) {
             const Piece *piece = trace->piece + p;
-            if (piece->from > at[0] || piece->to < at[0] || piece->y <= floor_of || piece->y >= top)
-                continue;
-            top = piece->y;
+            double x = way * at[0], y = way * piece->y;
+            if (piece->from > x || piece->to < x || y <= floor_of || y >= top) continue;
+            top = y;
             found = p;
         }
         if (found >= 0) {
             *height += top - at[1];
-            *along = trace->piece[found].along + at[0] - trace->piece[found].from;
+            *along = trace->piece[found].along + way * at[0] - trace->piece[found].from;
             return trace->piece[found].arc;
         }
         corners_of(trace, triangle, place);
         for (int i = 0; i < 3; i++) /* edges above run to the left */
-            if (place[i][0] >= at[0] && place[(i + 1) % 3][0] < at[0]) out = i;
-        if (out < 0) return -1;
+            if (way * place[i][0] >= at[0] && way * place[(i + 1) % 3][0] < at[0]) out = i;
+        if (out < 0) return -2;
         const double *a = place[out], *b = place[(out + 1) % 3];
-        double up = a[1] + (at[0] - a[0]) / (b[0] - a[0]) * (b[1] - a[1]);
+        double up = way * (a[1] + (way * at[0] - a[0]) / (b[0] - a[0]) * (b[1] - a[1]));
         *height += up - at[1];
-        at[1] = up;
-        cross_edge(trace, 3 * triangle + out, at);
+        if (trace->surface->twin[3 * triangle + out] < 0) return -1;
+        double there[2] = {way * at[0], way * up};
+        cross_edge(trace, 3 * triangle + out, there);
+        for (int d = 0; d < 2; d++) at[d] = way * there[d];
         triangle = trace->surface->twin[3 * triangle + out] / 3;
         floor_of = at[1] - trace->near;
     }
-    return -1;
+    return -2;
 }
 
 /* The piece of an arc that holds its middle. */
@@ -215,29 +218,38 @@ static bool start_at(const Trace *trace, int arc, int *triangle, double at[2])
     return true;
 }
 
-/* The cylinder above an arc, which begins there; its number is `which`. */
-static bool find_cylinder(Trace *trace, int arc, int which, RefCylinder *cylinder)
+/* Notes the arcs of a cylinder's lower or upper side, which begins at `arc`; returns its width, 0
+ * where that does not close. */
+static double go_around(Trace *trace, int arc, bool upper, double begin, int which)
 {
-    double at[2], along, height, width = 0, upper = 0;
+    double width = 0;
+    for (int n = arc; n >= 0;) {
+        Arc *one = trace->arc + n;
+        int *cylinder = upper ? &one->under : &one->over;
+        if (*cylinder >= 0) return width;
+        *cylinder = which;
+        one->place[upper] = begin + width;
+        width += one->length;
+        n = upper ? one->below : one->above;
+    }
+    return 0;
+}
+
+/* The cylinder above an arc, which begins there, or the one below it, which a rim is below; its
+ * number is `which`. */
+static bool find_cylinder(Trace *trace, int arc, bool below, int which, RefCylinder *cylinder)
+{
+    double at[2], along = 0, height;
     int triangle;
     if (!start_at(trace, arc, &triangle, at)) return false;
-    for (int n = arc; trace->arc[n].over < 0; n = trace->arc[n].above) {
-        trace->arc[n].over = which;
-        trace->arc[n].place[0] = width;
-        width += trace->arc[n].length;
-        if (trace->arc[n].above < 0) return false;
-    }
-    int top = climb(trace, triangle, at, &height, &along);
-    if (top < 0) return false;
-    double begin = trace->arc[arc].length / 2 - along;
-    for (int n = top; trace->arc[n].under < 0; n = trace->arc[n].below) {
-        trace->arc[n].under = which;
-        trace->arc[n].place[1] = begin + upper;
-        upper += trace->arc[n].length;
-        if (trace->arc[n].below < 0) return false;
-    }
+    double width = go_around(trace, arc, below, 0, which);
+    int end = climb(trace, triangle, below ? -1 : 1, at, &height, &along);
     *cylinder = (RefCylinder){.high = {width, height}};
-    return height > 0 && fabs(upper - width) < 1e3 * trace->near;
+    if (!(width > 0 && height > 0) || end == -2) return false;
+    if (end == -1) return true;
+    if (below || trace->arc[end].under >= 0) return false;
+    double other = go_around(trace, end, true, trace->arc[arc].length / 2 - along, which);
+    return fabs(other - width) < 1e3 * trace->near;
 }
 
 /* Both sides of every arc, after the rectangles have moved to where they stay. */
@@ -270,15 +282,15 @@ static void join_cylinders(const Trace *trace, RefCylinders *cylinders)
 static bool find_cylinders(Trace *trace, RefCylinders *cylinders)
 {
     double longest = 0, at = 0;
-    cylinders->cylinder = sm_alloc((size_t)trace->arcs, sizeof *cylinders->cylinder);
-    for (int n = 0; n < trace->arcs; n++) {
-        if (trace->arc[n].over >= 0) continue;
+    cylinders->cylinder = sm_alloc(2 * (size_t)trace->arcs, sizeof *cylinders->cylinder);
+    for (int n = 0; n < 2 * trace->arcs; n++) { /* those above arcs come first */
+        int arc = n % trace->arcs;
+        bool below = n >= trace->arcs;
+        if ((below ? trace->arc[arc].under : trace->arc[arc].over) >= 0) continue;
         RefCylinder *cylinder = cylinders->cylinder + cylinders->count;
-        if (!find_cylinder(trace, n, cylinders->count++, cylinder)) return false;
+        if (!find_cylinder(trace, arc, below, cylinders->count++, cylinder)) return false;
         longest = fmax(longest, fmax(cylinder->high[0], cylinder->high[1]));
     }
-    for (int n = 0; n < trace->arcs; n++)
-        if (trace->arc[n].under < 0) return false;
     for (int c = 0; c < cylinders->count; c++) {
         RefCylinder *cylinder = cylinders->cylinder + c;
         cylinder->low[0] = at;
@@ -345,6 +357,7 @@ static bool place_middles(const Trace *trace, RefLeaves *leaves)
     long end = seen[root];
     for (long n = 0; n < end; n++)
         for (int c = 3 * queue[n]; c < 3 * queue[n] + 3; c++) {
+            if (surface->twin[c] < 0) continue;
             int next = surface->twin[c] / 3;
             memcpy(at, leaves->middle[queue[n]], sizeof at);
             step_over(trace, cylinders, c, at);

@@ -45,7 +45,7 @@ static void scale(const Attempt *attempt)
 static bool try(const RefTriangulation *surface, const RefHolomorphic *basis, const int *number,
                 Attempt *attempt)
 {
-    int zeros = 2 * surface->genus - 2, *zero = sm_alloc((size_t)zeros, sizeof *zero);
+    int zeros = ref_zeros_count(surface), *zero = sm_alloc((size_t)zeros, sizeof *zero);
     *attempt = (Attempt){.surface = ref_triangulation_copy(surface)};
     for (int d = 0; d < 2; d++)
         attempt->step[d] = sm_alloc(3 * (size_t)surface->triangles, sizeof *attempt->step[d]);
@@ -95,7 +95,7 @@ static bool try_all(const RefTriangulation *surface, const RefHolomorphic *basis
     for (int n = 0; n < count; n++) {
         Attempt attempt;
         if (!try(surface, basis, number + n * basis->count, &attempt)) continue;
-        double cells = cells_of(&attempt.leaves.cylinders) / (2 * surface->genus - 2);
+        double cells = cells_of(&attempt.leaves.cylinders) / ref_zeros_count(surface);
         double found = score[n] + cells / MANY_CELLS;
         if (found >= least) {
             attempt_free(&attempt);
@@ -130,22 +130,23 @@ SmCode ref_multitorus_unfold(RefTriangulation *surface, const char *name, double
     bool found;
     SmCode code = unfold(surface, name, &best, &found, error);
     RefTriangulation fine = {.triangles = 0};
-    for (long four = 4;
-         code == SM_OK && !found && four * surface->triangles <= MOST_TRIANGLES / surface->genus;
-         four *= 4) {
+    long most = MOST_TRIANGLES / (surface->genus + surface->rims);
+    for (long four = 4; code == SM_OK && !found && four * surface->triangles <= most; four *= 4) {
         RefTriangulation next = ref_triangulation_quarter(fine.triangles ? &fine : surface);
         ref_triangulation_free(&fine);
         fine = next;
         ref_triangulation_delaunay(&fine);
+        ref_triangulation_split(&fine);
         code = unfold(&fine, name, &best, &found, error);
     }
     ref_triangulation_free(&fine);
     if (code != SM_OK) return code;
     if (!found)
-        return sm_fail(error, SM_INPUT,
-                       "%s: a surface of genus %d, of whose maps each turns a triangle over: give "
-                       "it more triangles, or cut handles",
-                       name, surface->genus);
+        return sm_fail(
+            error, SM_INPUT,
+            "%s: a surface of genus %d with %d rims, of whose maps each turns a triangle "
+            "over: give it more triangles, cut handles or close rims",
+            name, surface->genus, surface->rims);
     ref_triangulation_free(surface);
     *surface = best.surface;
     *leaves = best.leaves;

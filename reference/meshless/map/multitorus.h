@@ -1,5 +1,6 @@
-/* multitorus.h - the plane of a closed surface of genus 2 and more: of its holomorphic one-forms
- * with closed leaves the one that suits a shell best, and the cylinders of that (leaves.h). */
+/* multitorus.h - the plane of a closed surface of genus 2 and more, or of a sheet with two holes
+ * and more, whose double that is: of its holomorphic one-forms with closed leaves, among which rims
+ * are, the one that suits a shell best, and the cylinders of that (leaves.h). */
 #ifndef REF_MULTITORUS_H
 #define REF_MULTITORUS_H
 
@@ -7,11 +8,11 @@
 
 /* Finds the plane. The surface gets a few vertices about the form's zeros, and where it is too
  * coarse for any form, each triangle becomes four, as long as they are no more than 100,000 by the
- * genus; step[0] and step[1], [3 * triangles], which the caller frees, are the form's along its
- * edges, so that the plane has the surface's area. Of forms that let log L vary little, one is
- * taken whose cylinders need few cells. `name` is for messages. Errors, and the surface unchanged:
- * holomorphic.h's; SM_INPUT, a surface of which no form that was tried turns no triangle over.
- * O(triangles) for each, beside a factorisation. */
+ * genus and the rims; step[0] and step[1], [3 * triangles], which the caller frees, are the form's
+ * along its edges, so that the plane has the surface's area. Of forms that let log L vary little,
+ * one is taken whose cylinders need few cells. `name` is for messages. Errors, and the surface
+ * unchanged: holomorphic.h's; SM_INPUT, a surface of which no form that was tried turns no triangle
+ * over. O(triangles) for each, beside factorisations. */
 SmCode ref_multitorus_unfold(RefTriangulation *surface, const char *name, double *step[2],
                              RefLeaves *leaves, SmError *error);
 

@@ -42,7 +42,8 @@ typedef struct {
 
 const char *ref_map_kind_name(RefMapKind kind)
 {
-    static const char *const name[] = {"disk", "cap", "annulus", "torus", "sphere", "multitorus"};
+    static const char *const name[] = {"disk",   "cap",        "annulus", "torus",
+                                       "sphere", "multitorus", "holed"};
     return name[kind];
 }
 
@@ -64,7 +65,7 @@ static bool reduce(const Plane *plane, double theta[2])
 {
     bool folded = plane->kind == REF_MAP_SPHERE || plane->kind == REF_MAP_CAP;
     double height = folded ? 2 * plane->side[1] : plane->side[1];
-    if (plane->kind == REF_MAP_DISK || plane->kind == REF_MAP_MULTITORUS) return false;
+    if (plane->kind == REF_MAP_DISK || plane->middle) return false;
     if (plane->kind == REF_MAP_TORUS || plane->kind == REF_MAP_SPHERE) {
         double rows = floor(theta[1] / height);
         theta[0] -= rows * plane->shift;
@@ -152,7 +153,7 @@ static SmCode map_annulus(const RefTriangulation *surface, const double *weight,
             if (surface->rim[c] == 0) root = surface->vertex[c];
         }
     SmCode code = between(surface, weight, part, 1, 2, plane->step + 1, error);
-    plane->step[0] = ref_harmonic_crossing(surface);
+    plane->step[0] = ref_harmonic_crossing(surface, 0, 1);
     free(part);
     if (code == SM_OK) code = ref_harmonic_solve(surface, weight, NULL, 1, plane->step, error);
     if (code != SM_OK) return code;
@@ -542,8 +543,8 @@ static bool has_map(const RefTriangulation *surface, RefMapKind *kind)
     static const RefMapKind open[] = {REF_MAP_DISK, REF_MAP_ANNULUS};
     if (surface->rims == 0)
         *kind = closed[surface->genus < 2 ? surface->genus : 2];
-    else if (surface->genus == 0 && surface->rims < 3)
-        *kind = open[surface->rims - 1];
+    else if (surface->genus == 0)
+        *kind = surface->rims < 3 ? open[surface->rims - 1] : REF_MAP_HOLED;
     else
         return false;
     return true;
@@ -594,6 +595,7 @@ static SmCode find_plane(const char *name, double least, RefMapKind kind, struct
         code = map_torus(surface, weight, ref_triangulation_area(surface), 0, plane, error);
         break;
     case REF_MAP_MULTITORUS:
+    case REF_MAP_HOLED:
         code = map_multitorus(name, on, plane, error);
         break;
     }
@@ -617,11 +619,11 @@ static SmCode map_any(const char *name, RefSurfaceMap *map, SmError *error)
     RefMapKind kind;
     Plane plane;
     if (!has_map(surface, &kind))
-        return sm_fail(
-            error, SM_INPUT,
-            "%s: a surface of genus %d with %d rim%s: a shell is a sheet with one rim, a "
-            "tube with two, or a closed surface; close or cut what is more",
-            name, surface->genus, surface->rims, surface->rims == 1 ? "" : "s");
+        return sm_fail(error, SM_INPUT,
+                       "%s: a surface of genus %d with %d rim%s: a shell is a closed surface, or "
+                       "has rims and no "
+                       "handle; close or cut what is more",
+                       name, surface->genus, surface->rims, surface->rims == 1 ? "" : "s");
     SmCode code = find_plane(name, 0, kind, map->surface, &plane, error);
     if (code == SM_OK && turns_over(&plane, surface->triangles)) {
         plane_free(&plane);

@@ -1,4 +1,4 @@
-/* Maps of closed surfaces of genus 2 and more, and shells on them. */
+/* Maps of closed surfaces of genus 2 and more and of sheets with holes, and shells on them. */
 #include "../shell/test_shell.h"
 #include "../solve/modes.h"
 #include "../test_solver.h"
@@ -7,12 +7,12 @@
 
 static unsigned seed = 3;
 
-static RefSurfaceMap map_of(const SmMesh *mesh, int genus)
+static RefSurfaceMap map_of(const SmMesh *mesh, RefMapKind kind, int genus)
 {
     RefSurfaceMap map;
     SmError error = {0};
     if (ref_surface_map_create(mesh, "mesh", &map, &error) != SM_OK) fail_msg("%s", error.text);
-    assert_int_equal(map.kind, REF_MAP_MULTITORUS);
+    assert_int_equal(map.kind, kind);
     assert_int_equal(map.flips, 0);
     assert_int_equal(map.handles, 0);
     assert_int_equal(ref_surface_map_triangles(&map)->genus, genus);
@@ -31,13 +31,15 @@ static double area_of(const SmMesh *mesh)
     return area;
 }
 
-/* Cylinders are 3 g - 3, their area is the surface's, and intervals fill their sides. */
-static void check_cylinders(const SmMesh *mesh, const RefSurfaceMap *map, int genus)
+/* The cylinders' area is the surface's, and intervals fill their sides but for those that are rims.
+ */
+static void check_cylinders(const SmMesh *mesh, const RefSurfaceMap *map, int cylinders, int zeros,
+                            int rims)
 {
     const RefCylinders *all = map->chart.cylinders;
     double area = 0;
-    assert_int_equal(all->count, 3 * genus - 3);
-    assert_int_equal(all->joints, 8 * (genus - 1));
+    assert_int_equal(all->count, cylinders);
+    assert_int_equal(all->joints, 4 * zeros);
     for (int c = 0; c < all->count; c++) {
         const RefCylinder *one = all->cylinder + c;
         double width = one->high[0] - one->low[0], filled[2] = {0};
@@ -46,8 +48,12 @@ static void check_cylinders(const SmMesh *mesh, const RefSurfaceMap *map, int ge
         for (int j = 0; j < all->joints; j++)
             if (all->joint[j].from == c)
                 filled[all->joint[j].up] += all->joint[j].end - all->joint[j].begin;
-        for (int k = 0; k < 2; k++) assert_true(fabs(filled[k] / width - 1) < 1e-9);
+        for (int k = 0; k < 2; k++) {
+            rims -= filled[k] == 0;
+            assert_true(filled[k] == 0 || fabs(filled[k] / width - 1) < 1e-9);
+        }
     }
+    assert_int_equal(rims, 0);
     assert_true(fabs(area / area_of(mesh) - 1) < 1e-3);
 }
 
@@ -97,8 +103,8 @@ TEST(a_double_torus_is_three_cylinders)
     for (int fine = 0; fine < 2; fine++) {
         SmMesh mesh = tori_mesh(&double_torus, fine ? 90 : 45, &seed);
         random_move(&seed, &mesh);
-        RefSurfaceMap map = map_of(&mesh, 2);
-        check_cylinders(&mesh, &map, 2);
+        RefSurfaceMap map = map_of(&mesh, REF_MAP_MULTITORUS, 2);
+        check_cylinders(&mesh, &map, 3, 2, 0);
         check_chart(&mesh, &map);
         median[fine] = map.angle_median;
         ref_surface_map_free(&map);
@@ -112,10 +118,27 @@ TEST(so_is_one_with_symmetries_and_a_triple_torus_is_six)
     needs_solver();
     for (int genus = 2; genus < 4; genus++) {
         SmMesh mesh = tori_mesh(genus == 2 ? &even_double_torus : &triple_torus, 80, &seed);
-        RefSurfaceMap map = map_of(&mesh, genus);
-        check_cylinders(&mesh, &map, genus);
+        RefSurfaceMap map = map_of(&mesh, REF_MAP_MULTITORUS, genus);
+        check_cylinders(&mesh, &map, 3 * genus - 3, 2 * genus - 2, 0);
         check_chart(&mesh, &map);
         assert_true(map.angle_median < 2);
+        ref_surface_map_free(&map);
+        sm_mesh_free(&mesh);
+    }
+}
+
+/* A sheet of n rims is 2 n - 3 cylinders, of which n end at a rim. */
+TEST(a_sheet_with_holes_is_cylinders_with_rims)
+{
+    needs_solver();
+    for (int rims = 3; rims < 5; rims++) {
+        SmMesh mesh = plate_mesh(rims == 3 ? &two_holes : &three_holes, 50, 0.05, &seed);
+        random_move(&seed, &mesh);
+        sm_mesh_merge(&mesh);
+        RefSurfaceMap map = map_of(&mesh, REF_MAP_HOLED, 0);
+        check_cylinders(&mesh, &map, 2 * rims - 3, rims - 2, rims);
+        check_chart(&mesh, &map);
+        assert_true(map.angle_median < 3);
         ref_surface_map_free(&map);
         sm_mesh_free(&mesh);
     }
@@ -126,7 +149,7 @@ TEST(zeros_have_two_turns)
 {
     needs_solver();
     SmMesh mesh = tori_mesh(&triple_torus, 70, &seed);
-    RefSurfaceMap map = map_of(&mesh, 3);
+    RefSurfaceMap map = map_of(&mesh, REF_MAP_MULTITORUS, 3);
     const RefTriangulation *surface = ref_surface_map_triangles(&map);
     double *turn = sm_alloc((size_t)surface->vertices, sizeof *turn);
     for (long t = 0; t < surface->triangles; t++) {
@@ -213,28 +236,38 @@ static double forces_of(const RefShell *shell, int kind)
 }
 
 /* Six motions cost nothing, and no seventh does; the middle surface has the mesh's area. */
+static void check_shell(const SmMesh *mesh, const RefSurfaceMap *map, long nodes, bool linear,
+                        double off)
+{
+    RefShellOptions options = options_of(nodes, linear);
+    RefShell shell;
+    RefModes modes;
+    shell_of(&map->chart, &options, &shell);
+    for (int kind = 0; kind < 6; kind++) assert_true(forces_of(&shell, kind) < 1e-10);
+    assert_int_equal(ref_modes_find(&shell.matrices, NULL, 8, &modes, NULL), SM_OK);
+    for (int k = 0; k < 6; k++) assert_true(fabs(modes.lambda[k]) < 1e-5 * modes.lambda[6]);
+    double *mass = sm_alloc((size_t)shell.nodes.count, sizeof *mass), area = 0;
+    ref_sparse_sums(&shell.matrices.mass, mass);
+    for (long n = 0; n < shell.nodes.count; n++)
+        area += mass[n] / (options.material.density * options.thickness);
+    assert_true(fabs(area / area_of(mesh) - 1) < off);
+    free(mass);
+    ref_modes_free(&modes);
+    ref_shell_free(&shell);
+}
+
 TEST(shells_of_it_are_rigid_in_six_ways)
 {
     needs_solver();
     SmMesh mesh = tori_mesh(&double_torus, 150, &seed);
-    RefSurfaceMap map = map_of(&mesh, 2);
-    for (int linear = 0; linear < 2; linear++) {
-        RefShellOptions options = options_of(2000, linear);
-        RefShell shell;
-        RefModes modes;
-        shell_of(&map.chart, &options, &shell);
-        for (int kind = 0; kind < 6; kind++) assert_true(forces_of(&shell, kind) < 1e-10);
-        assert_int_equal(ref_modes_find(&shell.matrices, NULL, 8, &modes, NULL), SM_OK);
-        for (int k = 0; k < 6; k++) assert_true(fabs(modes.lambda[k]) < 1e-5 * modes.lambda[6]);
-        double *mass = sm_alloc((size_t)shell.nodes.count, sizeof *mass), area = 0;
-        ref_sparse_sums(&shell.matrices.mass, mass);
-        for (long n = 0; n < shell.nodes.count; n++)
-            area += mass[n] / (options.material.density * options.thickness);
-        assert_true(fabs(area / area_of(&mesh) - 1) < (linear ? 1.5e-3 : 1e-3));
-        free(mass);
-        ref_modes_free(&modes);
-        ref_shell_free(&shell);
-    }
+    RefSurfaceMap map = map_of(&mesh, REF_MAP_MULTITORUS, 2);
+    for (int linear = 0; linear < 2; linear++)
+        check_shell(&mesh, &map, 2000, linear, linear ? 1.5e-3 : 1e-3);
+    ref_surface_map_free(&map);
+    sm_mesh_free(&mesh);
+    mesh = plate_mesh(&two_holes, 80, 0.05, &seed);
+    map = map_of(&mesh, REF_MAP_HOLED, 0);
+    check_shell(&mesh, &map, 2000, false, 2e-3);
     ref_surface_map_free(&map);
     sm_mesh_free(&mesh);
 }

@@ -123,6 +123,56 @@ static const Tori even_double_torus = {2, {{-1.1, 0}, {1.1, 0}}, {1, 1}, {0.42, 
 static const Tori triple_torus = {
     3, {{-2.3, 0}, {0, 0.2}, {2.4, 0}}, {1, 1.1, 1}, {0.42, 0.42, 0.4}};
 
+/* A plate of 4 by 2, bent up by `bend` x^2, with round holes; irregular. */
+typedef struct {
+    int holes;
+    double hole[4][3]; /* middles and radii */
+} Holes;
+
+/* By how much a place is outside of all holes; moves it onto a rim that is nearer than `near`. */
+static inline double outside_of(const Holes *holes, double near, double x[3])
+{
+    double least = INFINITY;
+    for (int n = 0; n < holes->holes; n++) {
+        const double *hole = holes->hole[n];
+        double way[2] = {x[0] - hole[0], x[1] - hole[1]}, out = hypot(way[0], way[1]);
+        double off = fabs(out - hole[2]) < near ? 0 : out - hole[2];
+        for (int d = 0; d < 2 && off == 0; d++) x[d] = hole[d] + hole[2] / out * way[d];
+        least = fmin(least, off);
+    }
+    return least;
+}
+
+static inline void on_plate(double u, double v, double x[3])
+{
+    x[0] = 4 * u;
+    x[1] = 2 * v;
+    x[2] = 0;
+}
+
+static inline SmMesh plate_mesh(const Holes *holes, int cells, double bend, unsigned *seed)
+{
+    SmMesh mesh = grid_mesh(2 * cells, cells, false, false, on_plate, 0.2, seed);
+    double *off = sm_alloc((size_t)mesh.vertex_count, sizeof *off);
+    long kept = 0;
+    for (long v = 0; v < mesh.vertex_count; v++) {
+        off[v] = outside_of(holes, 1.0 / cells, mesh.position[v]);
+        mesh.position[v][2] = bend * mesh.position[v][0] * mesh.position[v][0];
+    }
+    for (long t = 0; t < mesh.triangle_count; t++) {
+        const int *v = mesh.triangle[t];
+        double least = fmin(off[v[0]], fmin(off[v[1]], off[v[2]]));
+        if (least < 0 || fmax(off[v[0]], fmax(off[v[1]], off[v[2]])) <= 0) continue;
+        memcpy(mesh.triangle[kept++], v, sizeof *mesh.triangle);
+    }
+    mesh.triangle_count = kept;
+    free(off);
+    return mesh;
+}
+
+static const Holes two_holes = {2, {{1.1, 1, 0.45}, {2.9, 0.9, 0.5}}};
+static const Holes three_holes = {3, {{0.8, 1.1, 0.35}, {2, 0.9, 0.35}, {3.2, 1, 0.4}}};
+
 static inline void random_move(unsigned *seed, SmMesh *mesh)
 {
     double axis[2][3], third[3];

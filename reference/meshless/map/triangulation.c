@@ -574,8 +574,8 @@ static void halve_edge(RefTriangulation *surface, int ab)
     join(surface, ba, mb);
 }
 
-/* Room for triangles and one vertex in a closed surface. */
-static void widen_closed(RefTriangulation *surface, long triangles)
+/* Room for triangles and one vertex inside. */
+static void widen_inside(RefTriangulation *surface, long triangles)
 {
     size_t corners = 3 * (size_t)(surface->triangles + triangles);
     widen(surface, triangles, 1);
@@ -586,7 +586,7 @@ static void widen_closed(RefTriangulation *surface, long triangles)
 int ref_triangulation_halve(RefTriangulation *surface, int corner)
 {
     int first = (int)(3 * surface->triangles);
-    widen_closed(surface, 2);
+    widen_inside(surface, 2);
     halve_edge(surface, corner);
     return first;
 }
@@ -595,7 +595,7 @@ int ref_triangulation_insert(RefTriangulation *surface, int triangle, const doub
 {
     int a = 3 * triangle, first = (int)(3 * surface->triangles), m = (int)surface->vertices++;
     double square[3], spread = 0, away[3];
-    widen_closed(surface, 2);
+    widen_inside(surface, 2);
     for (int i = 0; i < 3; i++) { /* of the edge from corner i */
         square[i] = surface->length[a + i] * surface->length[a + i];
         spread += weight[i] * weight[(i + 1) % 3] * square[i];
@@ -618,13 +618,13 @@ int ref_triangulation_insert(RefTriangulation *surface, int triangle, const doub
         surface->length[one + 1] = away[(2 + k) % 3];
         surface->length[one + 2] = away[1 + k];
         join(surface, one, surface->twin[from]);
-        surface->corner[surface->vertex[one]] = one;
+        if (surface->corner[surface->vertex[one]] == from)
+            surface->corner[surface->vertex[one]] = one;
     }
     for (int one = first; one < first + 6; one += 3) surface->vertex[one + 2] = m;
     surface->vertex[a + 2] = m;
     surface->length[a + 1] = away[1];
     surface->length[a + 2] = away[0];
-    surface->corner[surface->vertex[a]] = a;
     surface->corner[m] = a + 2;
     join(surface, a + 1, first + 2);
     join(surface, first + 1, first + 5);
@@ -670,7 +670,7 @@ static int *halve_all(const RefTriangulation *surface, RefTriangulation *four)
 {
     int *middle = sm_alloc(3 * (size_t)surface->triangles, sizeof *middle);
     for (int c = 0; c < 3 * surface->triangles; c++) {
-        if (surface->twin[c] > c) {
+        if (surface->twin[c] > c || surface->twin[c] < 0) {
             const double *a = surface->position[surface->vertex[c]];
             const double *b = surface->position[surface->vertex[ref_corner_next(c)]];
             middle[c] = (int)four->vertices;
@@ -691,7 +691,7 @@ RefTriangulation ref_triangulation_quarter(const RefTriangulation *surface)
     static const int along[12] = {0, 1, 2, 0, 1, 2, 0, 1, 2, 2, 0, 1};
     static const int inner[3][2] = {{1, 11}, {5, 9}, {6, 10}};
     size_t triangles = (size_t)surface->triangles, corners = 12 * triangles;
-    size_t vertices = (size_t)surface->vertices, most = vertices + 3 * triangles / 2;
+    size_t vertices = (size_t)surface->vertices, most = vertices + 3 * triangles;
     RefTriangulation four = {.triangles = 4 * surface->triangles,
                              .vertices = surface->vertices,
                              .vertex = sm_alloc(corners, sizeof(int)),
@@ -710,10 +710,12 @@ RefTriangulation ref_triangulation_quarter(const RefTriangulation *surface)
         four.corner[four.vertex[c]] = c;
     }
     for (int c = 0; c < 3 * surface->triangles; c++)
-        for (int k = 0; k < 2; k++) four.twin[half_of(c, k)] = half_of(surface->twin[c], !k);
+        for (int k = 0; k < 2; k++)
+            four.twin[half_of(c, k)] = surface->twin[c] < 0 ? -1 : half_of(surface->twin[c], !k);
     for (int t = 0; t < surface->triangles; t++)
         for (int k = 0; k < 3; k++) join(&four, 12 * t + inner[k][0], 12 * t + inner[k][1]);
     free(middle);
+    begin_fans(&four);
     count_rims(&four);
     return four;
 }

@@ -43,7 +43,7 @@ static bool look_around(const Place *place, int vertex, Star *star)
     int first = surface->corner[vertex], at = first;
     star->count = 0;
     do {
-        if (star->count == MOST_AROUND) return false;
+        if (at < 0 || star->count == MOST_AROUND) return false;
         ref_triangle_shape(surface->length + at / 3 * 3, cotangent);
         angle[star->count] = atan2(1, cotangent[at % 3]);
         whole += angle[star->count];
@@ -101,6 +101,12 @@ static int holds(const Star *star, double complex zero, double weight[3])
         if (weight[0] >= 0 && weight[1] >= 0 && weight[2] >= 0) return k;
     }
     return -1;
+}
+
+static bool on_rim(const RefTriangulation *surface, int triangle)
+{
+    const int *twin = surface->twin + 3 * (long)triangle;
+    return twin[0] < 0 || twin[1] < 0 || twin[2] < 0;
 }
 
 /* Halves the edge across from one of the corners at the zero; the new vertex stands where the model
@@ -182,7 +188,10 @@ static bool narrow(const Place *place, Star *star)
         double complex a = star->z[k] - place->zero, b = star->z[next] - place->zero;
         double angle = atan2(cross(a, b), creal(conj(a) * b));
         if (angle >= 0 && angle <= NARROW) continue;
-        if (star->count == MOST_AROUND) return false;
+        int across = ref_corner_next(star->corner[k]);
+        if (star->count == MOST_AROUND || on_rim(place->surface, across / 3) ||
+            on_rim(place->surface, place->surface->twin[across] / 3))
+            return false;
         halve_across(place, star, k);
         k--;
     }
@@ -253,6 +262,8 @@ static bool place_zero(Place *place, int vertex, int *zero)
     if (held < 0) return false;
     if (weight[0] >= CLOSE)
         place->zero = 0;
+    else if (on_rim(place->surface, star.corner[held] / 3))
+        return false;
     else
         vertex = insert(place, &star, held, weight);
     *zero = vertex;
@@ -297,10 +308,11 @@ static bool settle_all(const Place *place)
 
 bool ref_zeros_place(RefTriangulation *surface, double *step[2], int *zero)
 {
-    int wanted = 2 * surface->genus - 2, found = 0;
+    int wanted = ref_zeros_count(surface), found = 0;
     int *saddle = sm_alloc((size_t)wanted, sizeof *saddle);
     bool single = true;
     for (int v = 0; v < surface->vertices && single; v++) {
+        if (surface->rim[surface->corner[v]] >= 0) continue;
         int count = changes(surface, step[1], v);
         single = count <= 4 && (count < 4 || found < wanted);
         if (count == 4 && single) saddle[found++] = v;

@@ -69,8 +69,7 @@ bool ref_chart_go_on(const RefChart *chart, double theta[2], bool *turned)
             way[d] = theta[d] - inside;
             theta[d] = inside;
         }
-        ref_cylinders_walk(chart->cylinders, theta, way);
-        return true;
+        return ref_cylinders_walk(chart->cylinders, theta, way);
     }
     if (holds(chart->low, chart->high, theta)) return true;
     for (int s = 0; s < chart->seams; s++) {

@@ -8,8 +8,9 @@ enum { REF_MOST_SEAMS = 8 };
 
 /* A rectangle of the plane of parameters (theta1, theta2) and the surface over it. Its sides are
  * rims of the surface, or seams, behind which the parameters go on in the rectangle but for a
- * constant, or but for a constant and half a turn. A closed surface of genus 2 and more has several
- * rectangles, joined along intervals of their sides (body/cylinders.h). */
+ * constant, or but for a constant and half a turn. A closed surface of genus 2 and more, as
+ * a sheet with two holes and more, has several rectangles, joined along intervals of their sides
+ * (body/cylinders.h). */
 typedef struct {
     double low[2], high[2];
     int seams;
