@@ -77,7 +77,8 @@ static const char look[] =
     "    for f, s in zip(j['from'], j['shift']):\n"
     "        steps |= {(s[0] + k * wide[f], s[1]) for k in (-1, 0, 1)}\n"
     "    sides = [(j['end'] - j['begin'])[j['from'] == k].sum() / w for k, w in enumerate(wide)]\n"
-    "    wanted = [1, 1, 1] if kind == 'holed' else [2, 2, 2]\n" /* one side of each is a rim */
+    "    wanted = [1, 1, 1] if kind == 'holed sheet' else [2, 2, 2]\n" /* one side of each is a rim
+                                                                        */
     "    assert np.allclose(sides, wanted, atol=1e-9), sides\n"
     "    assert sorted(j['from']) == sorted(j['to'])\n"
     "    there = [q for s in steps for e in (-1, 0, 1) for w in wide\n"
@@ -108,7 +109,8 @@ static void check_map(const char *mesh, const char *kind)
     snprintf(wanted, sizeof wanted, "  surface       %s: genus ", kind);
     assert_non_null(strstr(result.out, wanted));
     assert_non_null(strstr(result.out, "wrote map.h5\n"));
-    snprintf(command, sizeof command, "cd %s && /usr/bin/python3 look.py map.h5 %s", folder, kind);
+    snprintf(command, sizeof command, "cd %s && /usr/bin/python3 look.py map.h5 '%s'", folder,
+             kind);
     if (system(command)) fail_msg("%s: see above", mesh);
 }
 
@@ -128,7 +130,7 @@ TEST(maps_are_stored_whole)
     write_obj(path_in("double.obj"), tori_mesh(&double_torus, 40, &seed));
     check_map("double.obj", "multitorus");
     write_obj(path_in("plate.obj"), plate_mesh(&two_holes, 40, 0.05, &seed));
-    check_map("plate.obj", "holed");
+    check_map("plate.obj", "holed sheet");
     write_obj(path_in("wave.obj"), grid_mesh(24, 12, false, false, on_wave, 0.3, &seed));
     check_map("wave.obj", "disk");
 }

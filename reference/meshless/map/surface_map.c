@@ -42,8 +42,8 @@ typedef struct {
 
 const char *ref_map_kind_name(RefMapKind kind)
 {
-    static const char *const name[] = {"disk",   "cap",        "annulus", "torus",
-                                       "sphere", "multitorus", "holed"};
+    static const char *const name[] = {"disk",   "cap",        "annulus",    "torus",
+                                       "sphere", "multitorus", "holed sheet"};
     return name[kind];
 }
 

@@ -94,7 +94,7 @@ typedef struct {
 
 RefMapTriangle ref_surface_map_triangle(const RefSurfaceMap *map, long triangle);
 
-/* disk, cap, annulus, torus, sphere, multitorus or holed. */
+/* disk, cap, annulus, torus, sphere, multitorus or holed sheet. */
 const char *ref_map_kind_name(RefMapKind kind);
 
 #endif
