@@ -28,9 +28,9 @@ void ref_holomorphic_form(const RefTriangulation *surface, const RefHolomorphic 
 
 /* The `wanted` best choices of whole numbers for that form, best first, into [wanted][count];
  * returns how many. Those are best whose log L varies little over the area and whose energy is low;
- * their variance and a share of that make up `score`, [wanted]. None has a common divisor, and
- * between rims all are positive, so that the function is least or greatest on each.
- * O(triangles) for each of some hundreds. */
+ * their variance and a share of that make up `score`, [wanted]. None has a common divisor. Between
+ * rims the energy does not count, and the function is least on the longest rim and falls from all
+ * others everywhere. O(triangles) for each of some hundreds. */
 int ref_holomorphic_choose(const RefTriangulation *surface, const RefHolomorphic *basis, int wanted,
                            int *number, double *score);
 
