@@ -185,7 +185,7 @@ set(long_20 bench_inside damage bench_regress package python_module python_wheel
 set(long_10 bench_calibrate bench_kernels bench_sweep_run bench_points bench_gap bench_threads bench_command
   bench_experiment bench_comparison bench_stiffness bench_step_record bench_view bench_octree_states
   meshless_engine lib_shapebench fastlsm_engine)
-set(long_5 fastlsm_fastlsm fastlsm_fracture octree_octree lib_cut_surface install)
+set(long_5 meshless_multitorus fastlsm_fastlsm fastlsm_fracture octree_octree lib_cut_surface install)
 get_property(tests DIRECTORY PROPERTY TESTS)
 foreach(test ${tests})
   string(REGEX REPLACE "_f64$" "" noun ${test})
