@@ -320,7 +320,8 @@ static bool is_new(Line *line, const double zero[2], double tiny)
     for (int n = 0; n < line->count; n++)
         if (fabs(line->zero[n][0] - place[0]) < tiny && fabs(line->zero[n][1] - place[1]) < tiny)
             return false;
-    if (line->count < MOST_ZEROS) memcpy(line->zero[line->count++], place, sizeof place);
+    if (line->count == MOST_ZEROS) return false; /* one that is passed twice would count twice */
+    memcpy(line->zero[line->count++], place, sizeof place);
     return true;
 }
 

@@ -28,7 +28,7 @@ static void shorten(const RefTriangulation *surface, const RefHolomorphic *basis
         for (int i = 0; i < count; i++)
             for (int j = 0; j < count; j++) {
                 double times = rint(energy[i * count + j] / energy[j * count + j]);
-                if (i == j || times == 0) continue;
+                if (i == j || times == 0 || !isfinite(times)) continue;
                 for (long c = 0; c < 3 * surface->triangles; c++)
                     basis->form[i][c] -= times * basis->form[j][c];
                 for (int k = 0; k < count; k++)

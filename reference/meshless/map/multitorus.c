@@ -9,7 +9,7 @@
 #include "holomorphic.h"
 #include "zeros.h"
 
-enum { TRIED = 80, MOST_TRIANGLES = 100000 };
+enum { TRIED = 80, MOST_TRIANGLES = 100000, MOST_FORMS = 12 };
 /* Cells for each zero that are as bad as 1 of a form's score; and roots of each cylinder that are
  * too many. */
 static const double MANY_CELLS = 20, MOST_ROOTS = 100;
@@ -97,7 +97,7 @@ static bool try_all(const RefTriangulation *surface, const RefHolomorphic *basis
         if (!try(surface, basis, number + n * basis->count, &attempt)) continue;
         double cells = cells_of(&attempt.leaves.cylinders) / ref_zeros_count(surface);
         double found = score[n] + cells / MANY_CELLS;
-        if (found >= least) {
+        if (!(found < least)) {
             attempt_free(&attempt);
             continue;
         }
@@ -128,6 +128,12 @@ SmCode ref_multitorus_unfold(RefTriangulation *surface, const char *name, double
 {
     Attempt best;
     bool found;
+    int forms = 2 * surface->genus + surface->rims;
+    if (forms > MOST_FORMS)
+        return sm_fail(error, SM_INPUT,
+                       "%s: a surface of genus %d with %d rims: the search for its best map takes "
+                       "handles and rims up to %d, handles counted twice; cut or close some",
+                       name, surface->genus, surface->rims, MOST_FORMS);
     SmCode code = unfold(surface, name, &best, &found, error);
     RefTriangulation fine = {.triangles = 0};
     long most = MOST_TRIANGLES / (surface->genus + surface->rims);
@@ -142,11 +148,14 @@ SmCode ref_multitorus_unfold(RefTriangulation *surface, const char *name, double
     ref_triangulation_free(&fine);
     if (code != SM_OK) return code;
     if (!found)
-        return sm_fail(
-            error, SM_INPUT,
-            "%s: a surface of genus %d with %d rims, of whose maps each turns a triangle "
-            "over: give it more triangles, cut handles or close rims",
-            name, surface->genus, surface->rims);
+        return sm_fail(error, SM_INPUT,
+                       surface->rims
+                           ? "%s: a sheet with %d holes, all of whose maps turn triangles "
+                             "over or have cylinders that are too thin: close some holes"
+                           : "%s: a closed surface of genus %d, all of whose maps turn "
+                             "triangles over or have cylinders that are too thin: give "
+                             "it more triangles, or cut handles",
+                       name, surface->rims ? surface->rims - 1 : surface->genus);
     ref_triangulation_free(surface);
     *surface = best.surface;
     *leaves = best.leaves;

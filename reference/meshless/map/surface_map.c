@@ -625,7 +625,7 @@ static SmCode map_any(const char *name, RefSurfaceMap *map, SmError *error)
                        "handle; close or cut what is more",
                        name, surface->genus, surface->rims, surface->rims == 1 ? "" : "s");
     SmCode code = find_plane(name, 0, kind, map->surface, &plane, error);
-    if (code == SM_OK && turns_over(&plane, surface->triangles)) {
+    if (code == SM_OK && !plane.middle && turns_over(&plane, surface->triangles)) {
         plane_free(&plane);
         code = find_plane(name, 1e-4, kind, map->surface, &plane, error);
     }
@@ -661,7 +661,7 @@ static SmCode map_mended(const char *name, RefSurfaceMap *map, SmError *error)
     return code;
 }
 
-/* With all its handles, or where they have no map, with as few as can be. */
+/* With all its handles, or where they have no map, without those that can be cut. */
 static SmCode map_whole(const char *name, RefSurfaceMap *map, SmError *error)
 {
     RefTriangulation *surface = &map->surface->triangles;
