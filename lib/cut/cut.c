@@ -247,22 +247,25 @@ bool sm_cut_crosses_one(const SmCut *cut, long triangle, const double a[3], cons
     return in_order(a, b) ? crosses(cut, vertex, a, b) : crosses(cut, vertex, b, a);
 }
 
-static long crossed_in(const SmCut *cut, const int cube[3], long first, const double a[3],
+/* A triangle from `first` on, below `end`, that is entered in a cube and crossed; -1: none. */
+static long crossed_in(const SmCut *cut, const int cube[3], long first, long end, const double a[3],
                        const double b[3])
 {
     for (long e = cut->bucket[bucket_of(cut, cube)]; e >= 0; e = cut->entry[e].before)
-        if (cut->entry[e].triangle >= first &&
+        if (cut->entry[e].triangle >= first && cut->entry[e].triangle < end &&
             memcmp(cut->entry[e].cube, cube, sizeof cut->entry[e].cube) == 0 &&
             sm_cut_crosses_one(cut, cut->entry[e].triangle, a, b))
             return cut->entry[e].triangle;
     return -1;
 }
 
-long sm_cut_crossed(const SmCut *cut, long first, const double a[3], const double b[3])
+/* Any one that is crossed, or the lowest. */
+static long crossed(const SmCut *cut, long first, bool lowest, const double a[3], const double b[3])
 {
     int low[3], high[3], cube[3];
-    if (cut->entries == 0 || first >= cut->triangles) return -1;
-    if (!in_order(a, b)) return sm_cut_crossed(cut, first, b, a);
+    long end = cut->triangles, found = -1;
+    if (cut->entries == 0 || first >= end) return -1;
+    if (!in_order(a, b)) return crossed(cut, first, lowest, b, a);
     cubes_of(cut, 2, (const double *const[2]){a, b}, low, high);
     for (int d = 0; d < 3; d++) {
         low[d] = low[d] > cut->low[d] ? low[d] : cut->low[d];
@@ -278,12 +281,24 @@ long sm_cut_crossed(const SmCut *cut, long first, const double a[3], const doubl
             int to = cube_of(cut, a[0] + row[1] * (b[0] - a[0]) + 1e-6 * cut->cube);
             for (cube[0] = from > low[0] ? from : low[0]; cube[0] <= high[0] && cube[0] <= to;
                  cube[0]++) {
-                long triangle = crossed_in(cut, cube, first, a, b);
-                if (triangle >= 0) return triangle;
+                for (long one; (one = crossed_in(cut, cube, first, end, a, b)) >= 0;) {
+                    if (!lowest) return one;
+                    found = end = one;
+                }
             }
         }
     }
-    return -1;
+    return found;
+}
+
+long sm_cut_crossed(const SmCut *cut, long first, const double a[3], const double b[3])
+{
+    return crossed(cut, first, false, a, b);
+}
+
+long sm_cut_first_crossed(const SmCut *cut, long first, const double a[3], const double b[3])
+{
+    return crossed(cut, first, true, a, b);
 }
 
 bool sm_cut_crosses(const SmCut *cut, long first, const double a[3], const double b[3])

@@ -53,6 +53,9 @@ bool sm_cut_crosses(const SmCut *cut, long first, const double a[3], const doubl
 /* The same, and the number of such a triangle: one of them, or -1. */
 long sm_cut_crossed(const SmCut *cut, long first, const double a[3], const double b[3]);
 
+/* The same, and the lowest such number, so that all can be asked for one after the other. */
+long sm_cut_first_crossed(const SmCut *cut, long first, const double a[3], const double b[3]);
+
 /* The same of one triangle. O(1). */
 bool sm_cut_crosses_one(const SmCut *cut, long triangle, const double a[3], const double b[3]);
 

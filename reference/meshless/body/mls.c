@@ -82,15 +82,20 @@ void ref_mls_multiply(const double f[6], double part[6])
     }
 }
 
-/* Multiplies a weight in a plane by what cracks let through; false where that is nothing. */
-static bool cut(const RefNodes *nodes, int member, const double x[3], const double eye[3],
+/* Multiplies a weight by what cracks let through; false where that is nothing. */
+static bool cut(const RefNodes *nodes, int dims, int member, const double x[3], const double eye[3],
                 double *w)
 {
     double f[MOST_PARTS];
     if (!nodes->cut.pass(nodes->cut.cracks, eye, nodes->position[member], nodes->reach[member], f))
         return false;
     if (eye != x) memset(f + 1, 0, 5 * sizeof *f);
-    ref_mls_multiply(f, w);
+    if (dims == 2) {
+        ref_mls_multiply(f, w);
+    } else {
+        for (int d = 1; d < 4; d++) w[d] = f[0] * w[d] + f[d] * w[0];
+        w[0] *= f[0];
+    }
     return w[0] > 0;
 }
 
@@ -125,7 +130,7 @@ INLINE void gather(const RefNodes *nodes, int dims, int terms, const double x[3]
         double *w = shape->scratch + (size_t)count * (size_t)(parts + terms), *p = w + parts;
         weigh(dims, s, reach, w);
         if (home >= 0 && !gets_past(nodes, member[n], home, x, w)) continue;
-        if (nodes->cut.pass && !cut(nodes, member[n], x, eye, w)) continue;
+        if (nodes->cut.pass && !cut(nodes, dims, member[n], x, eye, w)) continue;
         if (scale == 0) scale = reach;
         p[0] = 1;
         for (int d = 0; terms > 1 && d < dims; d++) p[1 + d] = (at[d] - x[d]) / scale;

@@ -37,7 +37,7 @@ bool ref_mls_at(const RefNodes *nodes, RefBasis basis, const double x[3], RefSha
 
 #define REF_LEAST_PIVOT 1e-3
 
-/* In a plane with cracks: at x as `eye` sees the nodes, which is a place beside x, maybe on the
+/* With cracks: at x as `eye` sees the nodes, which is a place beside x, maybe on the
  * other side of a crack. What cracks let through is a constant then, unless `eye` is x itself, the
  * same array: that is ref_mls_at(). */
 bool ref_mls_seen_from(const RefNodes *nodes, RefBasis basis, const double x[3],

@@ -25,8 +25,8 @@ static inline void ref_seam_cross(const RefSeam *seam, const double theta[2], do
 }
 
 /* Cracks that cut covers: what of a node's weight gets from the node's place `from` to x. Writes
- * that share's value, slopes and second derivatives (11, 22, 12) by x and returns true, or false
- * where nothing does. `reach` is the node's. */
+ * that share's value and slopes by x, in a plane also its second derivatives (11, 22, 12), and
+ * returns true, or false where nothing does. `reach` is the node's. */
 typedef struct {
     bool (*pass)(const void *cracks, const double x[3], const double from[3], double reach,
                  double part[6]);
