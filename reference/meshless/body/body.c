@@ -5,18 +5,21 @@
 #include <string.h>
 
 #include "covers.h"
+#include "cracked_body.h"
 
-enum { LEAST_NODES = 8, MOST_ATTEMPTS = 16 };
+enum { MOST_ATTEMPTS = 16 };
 
 void ref_body_free(RefBody *body)
 {
     ref_octants_free(&body->octants);
     ref_nodes_free(&body->nodes);
     ref_matrices_free(&body->matrices);
+    ref_body_cracks_free(body->cracks);
+    sm_pieces_free(&body->pieces);
+    body->cracks = NULL;
 }
 
-/* Edge of a cover in edges of its octant. */
-static double alpha_of(RefBasis basis)
+double ref_body_covers(RefBasis basis)
 {
     return basis == REF_MLS_LINEAR ? 3 : 6;
 }
@@ -29,7 +32,7 @@ static long nodes_of(const RefField *field, const RefBodyOptions *options, doubl
     RefOctantOptions rough = {
         .cell = cell, .coarser = options->coarser, .gauss = 1, .clip = 1, .rough = true};
     if (ref_octants_build(field, &rough, &octants, NULL) != SM_OK) return 0;
-    ref_nodes_place(field, &octants, alpha_of(options->basis), &nodes);
+    ref_nodes_place(field, &octants, ref_body_covers(options->basis), &nodes);
     long count = nodes.count;
     ref_nodes_free(&nodes);
     ref_octants_free(&octants);
@@ -91,10 +94,10 @@ SmCode ref_body_build(const RefField *field, const RefBodyOptions *options, long
                              .clip = 2};
     SmCode code = ref_octants_build(field, &fine, &body->octants, error);
     if (code != SM_OK) return code;
-    ref_nodes_place(field, &body->octants, alpha_of(options->basis), &body->nodes);
-    if (body->nodes.count < LEAST_NODES)
+    ref_nodes_place(field, &body->octants, ref_body_covers(options->basis), &body->nodes);
+    if (body->nodes.count < REF_LEAST_NODES)
         code = sm_fail(error, SM_INPUT, "the body has only %ld nodes; give it %d or more",
-                       body->nodes.count, LEAST_NODES);
+                       body->nodes.count, REF_LEAST_NODES);
     if (code == SM_OK) code = cover(count, shown, body, error);
     if (code == SM_OK)
         code = ref_matrices_build(&body->octants, &body->nodes, body->basis, &options->material,

@@ -3,7 +3,10 @@
 #ifndef REF_MESHLESS_BODY_H
 #define REF_MESHLESS_BODY_H
 
+#include "../../../lib/pieces.h"
 #include "matrices.h"
+
+typedef struct RefBodyCracks RefBodyCracks; /* cracked_body.h */
 
 typedef struct {
     double cell;    /* edge of the finest octants; 0: one that gives about `nodes` nodes */
@@ -20,7 +23,25 @@ typedef struct {
     RefNodes nodes;
     RefBasis basis;
     RefMatrices matrices;
+    RefBodyCracks *cracks; /* NULL: none */
+    SmPieces pieces;       /* of the nodes of a cracked body; else none, and it counts as one */
 } RefBody;
+
+/* How many pieces a body is in, and which one a node is of. */
+static inline int ref_body_pieces(const RefBody *body)
+{
+    return body->pieces.count ? (int)body->pieces.count : 1;
+}
+
+static inline int ref_body_piece(const RefBody *body, long node)
+{
+    return body->pieces.count ? body->pieces.piece[node] : 0;
+}
+
+/* Edge of a cover in edges of its octant. */
+double ref_body_covers(RefBasis basis);
+
+enum { REF_LEAST_NODES = 8 };
 
 /* Builds a body. The `count` points `shown` (a surface, handles; may be none) are covered as the
  * integration points are. The number of nodes is met as well as 16 attempts can.

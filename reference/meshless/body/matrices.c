@@ -180,6 +180,7 @@ static bool evaluate(const RefOctants *tree, long o, const RefNodes *nodes, RefB
     for (long q = 0; q < local->points; q++) {
         *where = point[q].x;
         local->weight[q] = point[q].weight;
+        if (point[q].weight == 0) continue; /* a crack has left it no nodes */
         if (!ref_mls_at(nodes, basis, point[q].x, shape)) return false;
         for (int n = 0; n < shape->count; n++) {
             int at = local->number[shape->node[n]];
@@ -199,6 +200,7 @@ static double take_means(const RefPoint *point, Local *local, double middle[3])
     double volume = 0;
     memset(middle, 0, sizeof(double[3]));
     for (long q = 0; q < local->points; q++) volume += local->weight[q];
+    if (volume == 0) return 0;
     for (long q = 0; q < local->points; q++)
         for (int d = 0; d < 3; d++) middle[d] += local->weight[q] / volume * point[q].x[d];
     for (int n = 0; n < local->count; n++)
@@ -237,13 +239,44 @@ static void extend(const RefPoint *point, const RefWall *wall, Local *local)
     }
 }
 
+/* Where a place of an octant is seen from: a little nearer to its middle, so that what a crack along
+ * a wall parts is on the octant's side of it. */
+static void look(const double x[3], const double middle[3], double eye[3])
+{
+    for (int d = 0; d < 3; d++) eye[d] = x[d] + 1e-6 * (middle[d] - x[d]);
+}
+
+/* Whether a crack passes between the octant's middle and a place of it. */
+static bool is_parted(const RefNodes *nodes, const double x[3], const double middle[3], double edge)
+{
+    double eye[3], part[6];
+    look(x, middle, eye);
+    return !nodes->cut.pass(nodes->cut.cracks, eye, middle, 1e-9 * edge, part) || part[0] < 1;
+}
+
+/* Whether a crack passes through the octant: functions jump in it. */
+static bool is_cracked(const RefOctants *tree, long o, const RefNodes *nodes,
+                       const double middle[3])
+{
+    const RefOctant *octant = tree->octant + o;
+    double edge = tree->cell * octant->size;
+    if (!nodes->cut.pass) return false;
+    for (long p = octant->first; p < points_end(tree, o); p++)
+        if (is_parted(nodes, tree->point[p].x, middle, edge)) return true;
+    for (long s = octant->first_wall; s < walls_end(tree, o); s++)
+        if (is_parted(nodes, tree->wall[s].x, middle, edge)) return true;
+    return false;
+}
+
 static void sum_walls(const RefOctants *tree, long o, const RefNodes *nodes, RefBasis basis,
                       const double middle[3], RefShape *shape, Local *local, Closure *closure)
 {
     memset(local->wall, 0, (size_t)local->count * sizeof *local->wall);
     for (long s = tree->octant[o].first_wall; s < walls_end(tree, o); s++) {
         const RefWall *wall = tree->wall + s;
-        if (!ref_mls_at(nodes, basis, wall->x, shape))
+        double eye[3];
+        look(wall->x, middle, eye);
+        if (!ref_mls_seen_from(nodes, basis, wall->x, nodes->cut.pass ? eye : wall->x, shape))
             extend(tree->point + tree->octant[o].first, wall, local);
         for (int n = 0; n < shape->count; n++) {
             int at = local->number[shape->node[n]];
@@ -262,13 +295,15 @@ static void sum_walls(const RefOctants *tree, long o, const RefNodes *nodes, Ref
  * up to the body's surface: then constant stress is in balance wherever shape functions are, and
  * the patch test is passed (Chen, Wu, Yoon and You 2001; here the gradients keep how they vary in
  * the octant, which leaves no soft modes). Where walls do not close, which is as well as the
- * surface is cut, the rest is taken out, so that linear functions have their gradients exactly. */
+ * surface is cut, the rest is taken out, so that linear functions have their gradients exactly. Where
+ * a crack passes through an octant, it stays as it is. */
 static void balance_gradients(const RefOctants *tree, long o, const RefNodes *nodes, RefBasis basis,
                               RefShape *shape, Local *local)
 {
     Closure closure = {{0}, {{0}}};
     double middle[3], open[3][3], off = 0;
     double volume = take_means(tree->point + tree->octant[o].first, local, middle);
+    if (volume == 0 || is_cracked(tree, o, nodes, middle)) return;
     sum_walls(tree, o, nodes, basis, middle, shape, local, &closure);
     for (int d = 0; d < 3; d++)
         for (int e = 0; e < 3; e++) {
