@@ -392,7 +392,7 @@ int sb_body_create(const sb_voxels *voxels, const sb_mesh *surface, const sb_bod
         free(made);
         return sm_done(failed, &why, error);
     }
-    bool follows = type->links && type->pieces; /* the surface does, where links break */
+    bool follows = (type->links || type->cut) && type->pieces; /* the surface does, what parts */
     complete(made, voxels, surface, follows ? inner.strain_limit : 0);
     *body = made;
     return sm_done(SM_OK, NULL, error);

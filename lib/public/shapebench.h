@@ -317,7 +317,8 @@ typedef struct {
     double damping;      /* of regions' motion relative to rigid, 0 to 1 (fastlsm eq. 14) */
     int damping_every;   /* n: in every n-th step; 0 means 1 */
     int cuttable;        /* 1: sb_body_cut() and blades work. The octree's bodies always are;
-                          * FastLSM's cost some memory more, and must be one instance */
+                          * FastLSM's cost some memory more, and must be one instance; a meshless
+                          * one's modes are found anew at every cut */
     double strain_limit; /* FastLSM: a link longer than this times its rest length breaks, above 1;
                           * 0: never. The surface comes apart with the links, after each call of
                           * sb_body_step() in which any broke: it has other vertices then */

@@ -398,8 +398,12 @@ class Bodies(unittest.TestCase):
         low, high = np.array(mesh.facts().low), np.array(mesh.facts().high)
         plane = low - 0.5 * (high - low) + 2 * (high - low) * np.array(square[0])
         plane[:, 2] = 0.51 * low[2] + 0.49 * high[2]
-        for engine in ("fastlsm", "octree"):
-            with sb.Body(sb.Voxels(mesh, particles=400), mesh, engine=engine, cuttable=True) as body:
+        for engine in ("fastlsm", "octree", "meshless"):
+            if engine not in sb.engines():
+                continue
+            precision = "double" if engine == "meshless" else "single"
+            with sb.Body(sb.Voxels(mesh, particles=400), mesh, engine=engine, precision=precision,
+                         cuttable=True) as body:
                 self.assertEqual(body.pieces().max(), 0)
                 before = body.counts()
                 body.cut(plane, square[1])

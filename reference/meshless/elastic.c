@@ -37,22 +37,22 @@ SmCode ref_meshless_field(const RefMeshlessOptions *options, RefMpu *mpu, SmErro
     return sm_fail(error, code, "%s", why.text);
 }
 
-SmCode ref_elastic_body(const RefMeshlessOptions *options, long *count, double (**x)[3],
-                        RefElastic *elastic, SmError *error)
+SmCode ref_elastic_body(const RefMeshlessOptions *options, bool cuttable, long *count,
+                        double (**x)[3], RefElastic *elastic, SmError *error)
 {
     bool own = !*x; /* points: what is given beside the mesh plays no part */
     const RefMpu *given = own ? NULL : options->given;
-    RefMpu mpu = {0};
+    RefMpu *mpu = &elastic->mpu;
     double start = sm_now();
-    SmCode code = given ? SM_OK : ref_meshless_field(options, &mpu, error);
+    SmCode code = given ? SM_OK : ref_meshless_field(options, mpu, error);
     if (code != SM_OK) return code;
     double built = sm_now();
     if (own) {
-        *count = mpu.points.count;
+        *count = mpu->points.count;
         *x = sm_alloc((size_t)*count, sizeof **x);
-        memcpy(*x, mpu.points.position, (size_t)*count * sizeof **x);
+        memcpy(*x, mpu->points.position, (size_t)*count * sizeof **x);
     }
-    RefField field = ref_mpu_field(given ? given : &mpu);
+    RefField field = ref_mpu_field(given ? given : mpu);
     RefBodyOptions body = {.nodes = options->nodes > 0 ? options->nodes : REF_MESHLESS_NODES,
                            .within = own ? 0.01 : 0,
                            .coarser = options->uniform ? 0 : 1,
@@ -61,7 +61,10 @@ SmCode ref_elastic_body(const RefMeshlessOptions *options, long *count, double (
     code = ref_body_build(&field, &body, *count, (const double(*)[3]) * x, &elastic->body, error);
     elastic->field_seconds = built - start;
     elastic->matrix_seconds = sm_now() - built;
-    ref_mpu_free(&mpu);
+    if (cuttable)
+        elastic->field = field;
+    else
+        ref_mpu_free(mpu);
     return code;
 }
 

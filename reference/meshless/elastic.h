@@ -8,9 +8,9 @@
 
 /* Fills body and seconds: octants, nodes, covers and matrices of the options' field,
  * whose covers reach `count` points. Where *x is NULL these are the field's own, which it then
- * receives, the caller's to free. Errors: those of ref_meshless_field() and ref_body_build(). */
-SmCode ref_elastic_body(const RefMeshlessOptions *options, long *count, double (**x)[3],
-                        RefElastic *elastic, SmError *error);
+ * receives, the caller's to free. The field of a body that may be cut is kept. Errors: those of ref_meshless_field() and ref_body_build(). */
+SmCode ref_elastic_body(const RefMeshlessOptions *options, bool cuttable, long *count,
+                        double (**x)[3], RefElastic *elastic, SmError *error);
 
 /* Fills in the modes of the free body, as many as the options say. Errors: ref_modes_find()'s. */
 SmCode ref_elastic_modes(const RefMeshlessOptions *options, RefElastic *elastic, SmError *error);

@@ -9,10 +9,10 @@ static SmCode absent(SmError *error)
                    "of this body as it is here: build a page of this scene (scripts/run view)");
 }
 
-SmCode ref_elastic_body(const RefMeshlessOptions *options, long *count, double (**x)[3],
-                        RefElastic *elastic, SmError *error)
+SmCode ref_elastic_body(const RefMeshlessOptions *options, bool cuttable, long *count,
+                        double (**x)[3], RefElastic *elastic, SmError *error)
 {
-    (void)options, (void)count, (void)x, (void)elastic;
+    (void)options, (void)cuttable, (void)count, (void)x, (void)elastic;
     return absent(error);
 }
 

@@ -8,7 +8,10 @@
 
 #include "../../lib/engine/boundary.h"
 #include "../../lib/vector.h"
+#include "body/covers.h"
+#include "body/cracked_body.h"
 #include "elastic.h"
+#include "motion/cracked_motion.h"
 #include "motion/grip_modes.h"
 #include "solve/least_squares.h"
 #include "stored.h"
@@ -23,6 +26,9 @@ struct SmEngine {
     double pose[3][4]; /* rest to initial position: a translation */
     bool points;       /* particles are the field's points, not the lattice's */
     bool stored;       /* modes are those that were stored, whatever holds the body */
+    bool cuttable;
+    int modes;         /* of the whole body */
+    double gravity[3];
     RefElastic elastic;
     long *place; /* [all] where a particle is in the skin */
     double (*rest)[3], (*x)[3],
@@ -56,6 +62,7 @@ static void meshless_destroy(SmEngine *engine)
     ref_motion_free(&engine->elastic.motion);
     ref_skin_free(&engine->elastic.skin);
     ref_body_free(&engine->elastic.body);
+    ref_mpu_free(&engine->elastic.mpu);
     sm_handles_free(&engine->handles);
     sm_free_all(engine->place, engine->rest, engine->x, engine->v, engine->elastic.carried,
                 engine->elastic.held, engine->impulse, engine);
@@ -75,8 +82,12 @@ SmCode ref_meshless_check(const SmVoxels *voxels, const SmEngineParams *params, 
     if (params->collide.self || params->collide.bodies)
         return sm_fail(error, SM_INPUT,
                        "collide: meshless bodies do not collide; use the engine fastlsm or octree");
-    if (params->strain_limit > 0)
+    if (params->strain_limit > 0 && isfinite(params->strain_limit))
         return sm_fail(error, SM_INPUT, "strain_limit: meshless bodies do not break; leave it out");
+    if (params->strain_limit > 0 && params->meshless->stored)
+        return sm_fail(error, SM_INPUT,
+                       "a stored elastic body cannot be cut: its modes are those that it was stored "
+                       "with");
     if (!(params->damping < 1))
         return sm_fail(error, SM_INPUT, "damping is 1, which stops a meshless body: give less");
     return SM_OK;
@@ -91,9 +102,12 @@ static SmCode make_body(const RefMeshlessOptions *options, SmEngine *engine, SmE
         ref_stored_body(options->stored, &options->material, &elastic->body, &elastic->modes);
         return SM_OK;
     }
-    SmCode code = ref_elastic_body(options, &engine->count, &engine->rest, elastic, error);
+    SmCode code = ref_elastic_body(options, engine->cuttable, &engine->count, &engine->rest,
+                                   elastic, error);
     if (engine->points) engine->all = engine->count;
-    return code == SM_OK ? ref_elastic_modes(options, elastic, error) : code;
+    if (code == SM_OK) code = ref_elastic_modes(options, elastic, error);
+    engine->modes = elastic->modes.count;
+    return code;
 }
 
 static void make_motion(const SmEngineParams *params, SmEngine *engine)
@@ -121,17 +135,25 @@ static void place_particles(SmEngine *engine, bool moving)
     }
 }
 
+/* What carries the particles, and what they push. */
+static void make_skin(SmEngine *engine)
+{
+    size_t nodes = (size_t)engine->elastic.body.nodes.count;
+    ref_skin_create(&engine->elastic.body, engine->all, CONST(engine->rest), &engine->elastic.skin,
+                    NULL);
+    engine->impulse = sm_realloc(engine->impulse, nodes, sizeof *engine->impulse);
+    memset(engine->impulse, 0, nodes * sizeof *engine->impulse);
+    for (long s = 0; s < engine->all; s++) engine->place[engine->elastic.skin.order[s]] = s;
+}
+
 static void make_particles(SmEngine *engine)
 {
     size_t count = (size_t)engine->all;
     double start = sm_now();
-    ref_skin_create(&engine->elastic.body, engine->all, CONST(engine->rest), &engine->elastic.skin,
-                    NULL);
     engine->elastic.carried = sm_alloc(count, sizeof *engine->elastic.carried);
-    engine->elastic.skin_seconds = sm_now() - start;
     engine->place = sm_alloc(count, sizeof *engine->place);
-    engine->impulse = sm_alloc((size_t)engine->elastic.body.nodes.count, sizeof *engine->impulse);
-    for (long s = 0; s < engine->all; s++) engine->place[engine->elastic.skin.order[s]] = s;
+    make_skin(engine);
+    engine->elastic.skin_seconds = sm_now() - start;
     ref_skin_place(&engine->elastic.skin, CONST(engine->elastic.motion.moved), NULL,
                    engine->elastic.carried);
     if (engine->points) return;
@@ -161,7 +183,9 @@ static SmCode create(const SmVoxels *voxels, const SmEngineParams *params, bool 
     SmEngine *engine = sm_alloc(1, sizeof *engine);
     engine->points = points;
     engine->stored = !points && params->meshless->stored;
+    engine->cuttable = !points && params->strain_limit > 0;
     engine->h = params->h;
+    memcpy(engine->gravity, params->gravity, sizeof engine->gravity);
     sm_engine_pose(params, 0, engine->pose);
     if (!points)
         take_lattice(voxels, params->meshless->given ? &params->meshless->given->points : NULL,
@@ -246,6 +270,16 @@ static void project(const SmEngine *engine, const double (*u)[3], double *amplit
     free(N);
 }
 
+/* Puts the particles where they are carried; their velocities stay. */
+static void move_particles(SmEngine *engine)
+{
+    ref_skin_place(&engine->elastic.skin, CONST(engine->elastic.motion.moved), NULL,
+                   engine->elastic.carried);
+    for (long s = 0; s < engine->all; s++)
+        memcpy(engine->x[engine->elastic.skin.order[s]], engine->elastic.carried[s],
+               sizeof *engine->x);
+}
+
 static void meshless_set(SmEngine *engine, SmField field, const double (*values)[3])
 {
     double(*u)[3] = sm_alloc((size_t)engine->count, sizeof *u);
@@ -261,11 +295,7 @@ static void meshless_set(SmEngine *engine, SmField field, const double (*values)
         return;
     }
     ref_motion_pose(&engine->elastic.motion);
-    ref_skin_place(&engine->elastic.skin, CONST(engine->elastic.motion.moved), NULL,
-                   engine->elastic.carried);
-    for (long s = 0; s < engine->all; s++)
-        memcpy(engine->x[engine->elastic.skin.order[s]], engine->elastic.carried[s],
-               sizeof *engine->x);
+    move_particles(engine);
 }
 
 long ref_meshless_points(const SmEngine *engine, double (*x)[3])
@@ -278,13 +308,15 @@ long ref_meshless_points(const SmEngine *engine, double (*x)[3])
 int ref_meshless_shapes(const SmEngine *engine)
 {
     int modes = engine->elastic.modes.count;
-    return modes > REF_RIGID_MODES ? modes - REF_RIGID_MODES : 0;
+    int rigid = REF_RIGID_MODES * ref_body_pieces(&engine->elastic.body);
+    return modes > rigid ? modes - rigid : 0;
 }
 
 double ref_meshless_show(SmEngine *engine, int mode, double far)
 {
     const RefModes *modes = &engine->elastic.modes;
-    size_t count = (size_t)modes->count, k = (size_t)mode + REF_RIGID_MODES;
+    size_t count = (size_t)modes->count;
+    size_t k = (size_t)(mode + REF_RIGID_MODES * ref_body_pieces(&engine->elastic.body));
     double most = 0;
     assert(!engine->points && mode >= 0 && mode < ref_meshless_shapes(engine));
     for (long n = 0; n < modes->nodes; n++) {
@@ -406,8 +438,9 @@ static void bind_points(SmEngine *engine)
     }
 }
 
-/* Other modes for other handles, unless they are stored; the motion goes on. */
-static void bind(SmEngine *engine)
+/* Other modes for other handles, unless they are stored; the motion goes on. `earlier` is the body
+ * before it was cut, if it was. */
+static void bind(SmEngine *engine, const RefBody *earlier)
 {
     RefElastic *elastic = &engine->elastic;
     RefMotion before = elastic->motion;
@@ -419,20 +452,89 @@ static void bind(SmEngine *engine)
                                 &held, NULL) == SM_OK;
     ref_motion_create(&elastic->body, found ? &held : &elastic->modes, &before.damping,
                       &elastic->motion);
-    memcpy(elastic->motion.force, before.force,
-           (size_t)before.nodes * sizeof *elastic->motion.force);
+    if (earlier)
+        ref_motion_gravity(&elastic->body, engine->gravity, &elastic->motion);
+    else
+        memcpy(elastic->motion.force, before.force,
+               (size_t)before.nodes * sizeof *elastic->motion.force);
     if (engine->points)
         bind_points(engine);
     else
         ref_grip_bind(&elastic->body, engine->grips, engine->grip, &elastic->motion);
-    ref_motion_take(&elastic->body, &before, engine->h, &elastic->motion);
+    if (earlier)
+        ref_motion_take_cracked(&elastic->body, earlier, elastic->material.density, &before,
+                                engine->h, &elastic->motion);
+    else
+        ref_motion_take(&elastic->body, &before, engine->h, &elastic->motion);
     ref_motion_free(&before);
     ref_modes_free(&held);
 }
 
+/* As many modes as the whole body had, and six more for each piece more. */
+static SmCode find_modes(const SmEngine *engine, const RefBody *body, RefModes *modes,
+                         SmError *error)
+{
+    long most = 3 * body->nodes.count / 2;
+    long wanted = engine->modes + REF_RIGID_MODES * (ref_body_pieces(body) - 1L);
+    return ref_modes_find(&body->matrices, NULL, (int)(wanted < most ? wanted : most), modes,
+                          error);
+}
+
+static SmCode meshless_cut(SmEngine *engine, const SmCut *cut, long first, SmError *error)
+{
+    RefElastic *elastic = &engine->elastic;
+    RefBody cracked, before = elastic->body;
+    RefModes modes;
+    if (!engine->cuttable)
+        return sm_fail(error, SM_USAGE,
+                       "the body was not made to be cut; create it with a strain_limit of INFINITY");
+    SmCode code =
+        ref_body_crack(&before, cut, first, &elastic->field, &elastic->material, engine->all,
+                       CONST(engine->rest), &cracked, error);
+    if (code != SM_OK) return code;
+    code = find_modes(engine, &cracked, &modes, error);
+    if (code != SM_OK) {
+        ref_body_free(&cracked);
+        return code;
+    }
+    take_impulses(engine);
+    ref_modes_free(&elastic->modes);
+    elastic->modes = modes;
+    elastic->body = cracked;
+    bind(engine, &before);
+    ref_body_free(&before);
+    ref_skin_free(&elastic->skin);
+    make_skin(engine);
+    move_particles(engine);
+    return SM_OK;
+}
+
+/* The piece of the body that a particle moves with. */
+static int piece_at(const RefBody *body, const double x[3], RefShape *shape)
+{
+    bool covered = ref_mls_at(&body->nodes, body->basis, x, shape);
+    return ref_body_piece(body, covered ? shape->node[0] : ref_mls_nearest(&body->nodes, x));
+}
+
+static void meshless_pieces(SmEngine *engine, SmPieces *pieces)
+{
+    const RefBody *body = &engine->elastic.body;
+    int all = ref_body_pieces(body), *number = sm_alloc((size_t)all, sizeof *number);
+    RefShape shape = ref_shape_create(&body->nodes);
+    *pieces = (SmPieces){0, sm_alloc((size_t)engine->count, sizeof *pieces->piece)};
+    for (int p = 0; p < all; p++) number[p] = -1;
+    for (long p = 0; p < engine->count; p++) {
+        int own = piece_at(body, engine->rest[p], &shape);
+        if (number[own] < 0) number[own] = (int)pieces->count++;
+        pieces->piece[p] = number[own];
+    }
+    ref_shape_free(&shape);
+    free(number);
+}
+
 static void meshless_bound(SmEngine *engine, const SmBoundary *boundary)
 {
-    if (sm_handles_set(&engine->handles, boundary, engine->count)) bind(engine);
+    if (sm_handles_set(&engine->handles, boundary, engine->count)) bind(engine, NULL);
     for (int n = 0, k = 0; n < engine->handles.count; n++)
         if (engine->handles.handle[n].count > 0)
             memcpy(engine->grip_pose[k++], engine->handles.handle[n].pose,
@@ -489,6 +591,8 @@ const SmEngineType ref_meshless_engine = {
     .bound = meshless_bound,
     .masses = meshless_masses,
     .count = meshless_count,
+    .cut = meshless_cut,
+    .pieces = meshless_pieces,
     .region = meshless_region,
 };
 
@@ -563,7 +667,7 @@ static void turn_of(const double pose[3][4], double turn[3])
 
 static void frames_bound(SmEngine *engine, const SmBoundary *boundary)
 {
-    if (sm_handles_set(&engine->handles, boundary, engine->count)) bind(engine);
+    if (sm_handles_set(&engine->handles, boundary, engine->count)) bind(engine, NULL);
     for (int n = 0, k = 0; n < engine->handles.count; n++) {
         const double(*pose)[4] = CONST4(engine->handles.handle[n].pose);
         if (engine->handles.handle[n].count == 0) continue;

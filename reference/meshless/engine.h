@@ -6,6 +6,11 @@
  * create() refuses several instances, collisions and a strain limit; obstacles stop nothing, and
  * `unstopped` says so.
  *
+ * A body that was created to be cut (a strain limit of INFINITY) is: a cut is a crack
+ * (body/crack_surface.h), and what it changes is made again: nodes, matrices and modes, in seconds a
+ * cut of a body of 1,000 nodes. Particles beside it move with what is on their side. A stored body
+ * is not cut, as its modes are those that it was stored with.
+ *
  * A handle grips the body at some of its particles (grip.h), a little more than one for every
  * second node there: these move with it to 1e-6, and those between them as the body does, by a few
  * thousandths of its sag. Handles that are other ones than before cost a search for modes, as
@@ -34,7 +39,8 @@ typedef enum { REF_MESHLESS_LINEAR, REF_MESHLESS_QUADRATIC } RefMeshlessBasis;
 
 struct RefMeshlessOptions {
     const SmMesh *mesh;  /* the body's closed surface, read by create() only */
-    const RefMpu *given; /* NULL, or the field of points that were given: they are carried, too */
+    const RefMpu *given; /* NULL, or the field of points that were given: they are carried, too;
+                          * the caller's, and kept of a body that may be cut */
     const RefStored *stored; /* NULL, or the body and its modes (stored.h): none are sought then */
     long points;  /* on the mesh's surface, of which the field is made without `given`; 0:
                    * REF_MESHLESS_POINTS, of thin bodies more, to REF_MESHLESS_MOST_POINTS */
@@ -65,7 +71,7 @@ SmCode ref_meshless_field(const RefMeshlessOptions *options, RefMpu *mpu, SmErro
 long ref_meshless_points(const SmEngine *engine, double (*x)[3]);
 
 /* How many natural modes were found that deform the body when nothing holds it: those of its modes
- * but the six rigid ones, rising in frequency. */
+ * but the six rigid ones of each piece, rising in frequency. */
 int ref_meshless_shapes(const SmEngine *engine);
 
 /* Puts the particles of a lattice, and points that were given, where that body's mode `mode`, from
@@ -97,6 +103,8 @@ typedef struct RefElastic {
     double (*carried)[3]; /* [skin.count] the points now, in the skin's order */
     int holds;
     double (*held)[3]; /* [holds] what each handle binds, at rest; of frames */
+    RefField field;    /* of a body that may be cut, */
+    RefMpu mpu;        /* and what it is of, unless points were given */
     double field_seconds, matrix_seconds, mode_seconds, skin_seconds;
 } RefElastic;
 

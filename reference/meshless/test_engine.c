@@ -5,6 +5,8 @@
 #include "../../lib/vector.h"
 #include "../../lib/voxel/voxelise.h"
 #include "engine.h"
+#include "stored.h"
+#include "test_cuts.h"
 #include "test_solver.h"
 
 static const SmEngineType *const type = &ref_meshless_engine;
@@ -335,6 +337,161 @@ TEST(set_and_get)
     scene_free(&scene);
 }
 
+/* The plane x = level of a beam from y = -0.5 to `front` is cut. */
+static SmCode cut_beam(SmEngine *engine, SmCut *cut, double level, double front, SmError *error)
+{
+    long first = cut->triangles;
+    cut_across(cut, 0, level, -0.5, front, 4);
+    return type->cut(engine, cut, first, error);
+}
+
+/* Momentum and energy of a free body's modes, and its mass. */
+static double momentum(SmEngine *engine, double p[3])
+{
+    const RefElastic *elastic = ref_meshless_elastic(engine);
+    const RefMotion *motion = &elastic->motion;
+    double all = 0, *mass = sm_alloc((size_t)motion->nodes, sizeof *mass);
+    ref_sparse_sums(&elastic->body.matrices.mass, mass);
+    memset(p, 0, sizeof(double[3]));
+    for (long n = 0; n < motion->nodes; n++) {
+        all += mass[n];
+        for (int d = 0; d < 3; d++) {
+            const double *row = motion->row + (6 * n + d) * motion->modes;
+            for (int k = 0; k < motion->modes; k++) p[d] += mass[n] * row[k] * motion->speed[k];
+        }
+    }
+    free(mass);
+    return all;
+}
+
+/* A beam that flies and sways, cut half and then through: its momentum stays, kinetic energy does
+ * not grow, and both pieces fly on, each in its own way, with all particles of one side. */
+TEST(a_cut_beam_flies_on_in_pieces)
+{
+    needs_solver();
+    Scene scene = beam_create(4, 150);
+    SmEngine *engine;
+    SmCut cut;
+    SmPieces pieces;
+    scene.params.strain_limit = INFINITY;
+    scene.options.modes = 40;
+    assert_int_equal(create(&scene, &engine, NULL), SM_OK);
+    sm_cut_init(&cut, 0.5);
+    RefElastic *elastic = ref_meshless_elastic(engine);
+    double(*v)[3] = field(engine, SM_REST), before[3], after[3];
+    for (long p = 0; p < particles_of(engine); p++) {
+        double x = v[p][0] - 2, z = v[p][2];
+        v[p][0] = 1 + 0.3 * z, v[p][1] = 0.2 * x * x, v[p][2] = -0.5 - 0.3 * x;
+    }
+    type->set(engine, SM_VELOCITY, (const double(*)[3])v);
+    for (int step = 0; step < 3; step++) type->step(engine, NULL);
+    for (int through = 0; through < 2; through++) {
+        double mass = momentum(engine, before), energy = 0, later = 0;
+        for (int k = 0; k < elastic->motion.modes; k++)
+            energy += elastic->motion.speed[k] * elastic->motion.speed[k];
+        assert_int_equal(cut_beam(engine, &cut, 2.05, through ? 1.5 : 0.55, NULL), SM_OK);
+        assert_true(fabs(momentum(engine, after) - mass) < 1e-9 * mass);
+        for (int d = 0; d < 3; d++) assert_true(fabs(after[d] - before[d]) < 1e-8 * mass);
+        for (int k = 0; k < elastic->motion.modes; k++)
+            later += elastic->motion.speed[k] * elastic->motion.speed[k];
+        assert_true(later < energy * (1 + 1e-6) && later > 0.9 * energy);
+        type->pieces(engine, &pieces);
+        assert_int_equal(pieces.count, 1 + through);
+        if (through == 0) sm_pieces_free(&pieces);
+    }
+    double(*rest)[3] = field(engine, SM_REST);
+    for (long p = 0; p < particles_of(engine); p++)
+        assert_int_equal(pieces.piece[p] == pieces.piece[0],
+                         (rest[p][0] < 2.05) == (rest[0][0] < 2.05));
+    for (int step = 0; step < 40; step++) type->step(engine, NULL);
+    momentum(engine, after);
+    for (int d = 0; d < 3; d++) assert_true(fabs(after[d] - before[d]) < 1e-7 * 4000);
+    double(*x)[3] = field(engine, SM_POSITION);
+    for (long p = 0; p < particles_of(engine); p++) /* 2 s at about 1 m/s */
+        for (int d = 0; d < 3; d++) assert_true(fabs(x[p][d] - rest[p][d]) < 4);
+    free(x);
+    free(v);
+    free(rest);
+    sm_pieces_free(&pieces);
+    sm_cut_free(&cut);
+    type->destroy(engine);
+    scene_free(&scene);
+}
+
+/* How far a cantilever sags at x under its own weight a length: Timoshenko's, of a square 1 wide. */
+static double cantilever_sag(double weight, double length, double x)
+{
+    double young = 1e5, shear = 10 * 1.3 / (12 + 11 * 0.3) * young / 2.6;
+    return weight * x * x * (6 * length * length - 4 * length * x + x * x) / (2 * young) +
+           weight * (length * x - x * x / 2) / shear;
+}
+
+/* A beam held at both ends and cut through between them: each end stays with its piece, which sags
+ * as a cantilever does. */
+TEST(a_held_beam_is_cut)
+{
+    needs_solver();
+    Scene scene = beam_create(4, 150);
+    SmEngine *engine;
+    SmCut cut;
+    scene.params.gravity[1] = -0.5;
+    scene.params.damping = 0.2;
+    scene.params.strain_limit = INFINITY;
+    assert_int_equal(create(&scene, &engine, NULL), SM_OK);
+    sm_cut_init(&cut, 0.5);
+    double(*rest)[3] = field(engine, SM_REST);
+    long *end[2], held[2] = {0};
+    for (int k = 0; k < 2; k++) {
+        end[k] = sm_alloc((size_t)particles_of(engine), sizeof(long));
+        for (long p = 0; p < particles_of(engine); p++)
+            if (k ? rest[p][0] > 3.8 : rest[p][0] < 0.2) end[k][held[k]++] = p;
+    }
+    static const double still[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
+    SmHandle handle[2] = {{.count = held[0], .particle = end[0]},
+                          {.count = held[1], .particle = end[1]}};
+    for (int k = 0; k < 2; k++) memcpy(handle[k].pose, still, sizeof still);
+    SmBoundary boundary = {.handle_count = 2, .handle = handle};
+    for (int step = 0; step < 150; step++) {
+        if (step == 20) assert_int_equal(cut_beam(engine, &cut, 1.93, 0.6, NULL), SM_OK);
+        if (step == 30) assert_int_equal(cut_beam(engine, &cut, 1.93, 1.6, NULL), SM_OK);
+        type->bound(engine, &boundary);
+        type->step(engine, NULL);
+    }
+    double(*x)[3] = field(engine, SM_POSITION);
+    for (long p = 0; p < particles_of(engine); p++) {
+        double from = rest[p][0] < 1.93 ? rest[p][0] : 4 - rest[p][0];
+        double wanted = cantilever_sag(500, rest[p][0] < 1.93 ? 1.93 : 2.07, from);
+        assert_true(fabs(x[p][1] - rest[p][1] + wanted) < 0.01 + 0.1 * wanted);
+    }
+    for (int k = 0; k < 2; k++) {
+        for (long n = 0; n < held[k]; n++) /* between points that are bound */
+            assert_true(sm_square_between(x[end[k][n]], rest[end[k][n]]) < 0.02 * 0.02);
+        free(end[k]);
+    }
+    free(x);
+    free(rest);
+    sm_cut_free(&cut);
+    type->destroy(engine);
+    scene_free(&scene);
+}
+
+/* A body that was not made for it is not cut. */
+TEST(what_is_not_cuttable)
+{
+    needs_solver();
+    Scene scene = beam_create(2, 60);
+    SmEngine *engine;
+    SmError error = {0};
+    SmCut cut;
+    assert_int_equal(create(&scene, &engine, NULL), SM_OK);
+    sm_cut_init(&cut, 0.5);
+    assert_int_equal(cut_beam(engine, &cut, 1, 1.5, &error), SM_USAGE);
+    assert_non_null(strstr(error.text, "strain_limit of INFINITY"));
+    sm_cut_free(&cut);
+    type->destroy(engine);
+    scene_free(&scene);
+}
+
 TEST(what_is_refused)
 {
     needs_solver();
@@ -351,6 +508,12 @@ TEST(what_is_refused)
     scene.params = sound;
     scene.params.strain_limit = 2;
     assert_int_equal(create(&scene, &engine, &error), SM_INPUT);
+    RefStored stored = {.nodes = 0};
+    scene.params.strain_limit = INFINITY;
+    scene.options.stored = &stored;
+    assert_int_equal(create(&scene, &engine, &error), SM_INPUT);
+    assert_non_null(strstr(error.text, "cannot be cut"));
+    scene.options.stored = NULL;
     scene.params = sound;
     scene.params.damping = 1;
     assert_int_equal(create(&scene, &engine, &error), SM_INPUT);

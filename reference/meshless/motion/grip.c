@@ -122,9 +122,37 @@ static void turn_nodes(const RefBody *body, const RefGrip *grip, const double *f
     ref_shape_free(&shape);
 }
 
+/* The piece of the body that most of a grip's points are of, by the weights of their mean; and what
+ * share of them is of another one. */
+static int piece_of(const RefMotion *motion, const double *weight, double *share)
+{
+    int most = 0;
+    memset(share, 0, (size_t)motion->pieces * sizeof *share);
+    for (long n = 0; n < motion->nodes; n++) share[motion->piece[n]] += weight[n];
+    for (int p = 1; p < motion->pieces; p++)
+        if (share[p] > share[most]) most = p;
+    return most;
+}
+
+/* Anchors the pieces that a grip holds and that have no anchor, [pieces], yet. */
+static void anchor_pieces(int grip, double *weight, const double *share, int *anchor,
+                          RefMotion *motion)
+{
+    for (int p = 0; p < motion->pieces; p++) {
+        if (anchor[p] >= 0 || share[p] < 1e-3) continue;
+        for (long n = 0; n < motion->nodes && motion->pieces > 1; n++)
+            if (motion->piece[n] == p) weight[n] /= share[p];
+        ref_motion_anchor(weight, p, motion);
+        motion->held[p] = true;
+        anchor[p] = grip;
+    }
+}
+
 void ref_grip_bind(const RefBody *body, int grips, RefGrip *grip, RefMotion *motion)
 {
-    bool anchored = false;
+    double *share = sm_alloc((size_t)motion->pieces, sizeof *share);
+    int *anchor = sm_alloc((size_t)motion->pieces, sizeof *anchor);
+    for (int p = 0; p < motion->pieces; p++) anchor[p] = -1;
     for (int k = 0; k < grips; k++) {
         grip[k].hold = motion->holds;
         if (!grip[k].rigid) {
@@ -132,16 +160,19 @@ void ref_grip_bind(const RefBody *body, int grips, RefGrip *grip, RefMotion *mot
                 ref_motion_hold(body, REF_HOLD_POSITION, grip[k].x[p], motion);
             continue;
         }
-        double *anchor = sm_alloc((size_t)motion->nodes, sizeof *anchor);
-        double *frame = frame_of(body, grip + k, motion, anchor);
+        double *weight = sm_alloc((size_t)motion->nodes, sizeof *weight);
+        double *frame = frame_of(body, grip + k, motion, weight);
         turn_nodes(body, grip + k, frame, motion);
-        if (!anchored) ref_motion_anchor(anchor, motion);
-        anchored = true;
-        ref_motion_hold_rows(frame, motion);
-        ref_motion_hold_rows(frame + 3 * motion->modes, motion);
+        int piece = piece_of(motion, weight, share);
+        anchor_pieces(k, weight, share, anchor, motion);
+        grip[k].anchor = anchor[piece];
+        ref_motion_hold_rows(frame, piece, motion);
+        ref_motion_hold_rows(frame + 3 * motion->modes, piece, motion);
         free(frame);
-        free(anchor);
+        free(weight);
     }
+    free(share);
+    free(anchor);
 }
 
 static void displacement(const double x[3], const double shift[3], const double pose[3][4],
@@ -158,19 +189,16 @@ static void displacement(const double x[3], const double shift[3], const double 
 void ref_grip_aim(int grips, const RefGrip *grip, const double shift[3], const double (*pose)[3][4],
                   RefMotion *motion)
 {
-    bool anchored = false;
-    double t[3] = {0}, way[3];
     for (int k = 0; k < grips; k++) {
         RefHold *hold = motion->hold + grip[k].hold;
         for (int p = 0; !grip[k].rigid && p < grip[k].count; p++)
             displacement(grip[k].x[p], shift, pose[k], hold[p].target);
         if (!grip[k].rigid) continue;
-        double R[9], *turn = hold[1].target;
+        double R[9], *turn = hold[1].target, t[3], way[3];
         for (int n = 0; n < 9; n++) R[n] = pose[k][n / 3][n % 3];
         ref_rotation_vector(R, turn, turn);
+        displacement(grip[grip[k].anchor].middle, shift, pose[grip[k].anchor], t);
         displacement(grip[k].middle, shift, pose[k], way);
-        if (!anchored) memcpy(t, way, sizeof t);
-        anchored = true;
         for (int d = 0; d < 3; d++) way[d] -= t[d];
         ref_rotation_unmean(turn, way, hold[0].target);
         for (int d = 0; d < 3; d++) hold[0].target[d] += t[d];

@@ -17,6 +17,7 @@ typedef struct {
     bool rigid; /* whether they say how they are turned */
     int hold;   /* its first constraint: of the middle's displacement, then the rotation; or of each
                  * point's position */
+    int anchor; /* the grip that is the anchor of its piece of the body, of one that is rigid */
 } RefGrip;
 
 /* Chooses points of a handle, [count] at rest: those that are farthest from each other, as long as
@@ -24,7 +25,8 @@ typedef struct {
 RefGrip ref_grip_choose(long count, const double (*x)[3], double apart, int most);
 void ref_grip_free(RefGrip *grip);
 
-/* Binds the motion, which has those modes, by all grips, the first of which becomes its anchor.
+/* Binds the motion, which has those modes, by all grips, the first of which at each piece of the
+ * body becomes its anchor.
  * Where two grips are closer than covers reach, the points between them are met less well. */
 void ref_grip_bind(const RefBody *body, int grips, RefGrip *grip, RefMotion *motion);
 

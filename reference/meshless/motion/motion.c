@@ -24,7 +24,7 @@ void ref_motion_free(RefMotion *motion)
     for (int k = 0; k < motion->holds; k++) hold_free(motion->hold + k);
     sm_free_all(motion->hold, motion->lambda, motion->row, motion->anchor, motion->drift, motion->z,
                 motion->speed, motion->load, motion->rotation, motion->local, motion->moved,
-                motion->force);
+                motion->force, motion->piece, motion->held, motion->sums);
     *motion = (RefMotion){0};
 }
 
@@ -81,29 +81,33 @@ static double *node_masses(const RefBody *body)
     return mass;
 }
 
-void ref_motion_anchor(const double *weight, RefMotion *motion)
+void ref_motion_anchor(const double *weight, int piece, RefMotion *motion)
 {
     size_t modes = (size_t)motion->modes;
-    memcpy(motion->anchor, weight, (size_t)motion->nodes * sizeof *weight);
-    memset(motion->drift, 0, 3 * modes * sizeof *motion->drift);
-    for (size_t n = 0; n < (size_t)motion->nodes; n++)
+    double *drift = motion->drift + 3 * (size_t)piece * modes;
+    memset(drift, 0, 3 * modes * sizeof *drift);
+    for (size_t n = 0; n < (size_t)motion->nodes; n++) {
+        if (motion->piece[n] != piece) continue;
+        motion->anchor[n] = weight[n];
         for (size_t k = 0; k < 3 * modes; k++)
-            motion->drift[k] += weight[n] * motion->row[n * 6 * modes + k];
+            drift[k] += weight[n] * motion->row[n * 6 * modes + k];
+    }
 }
 
-/* The modes' shares of a translation are masses that make up the body's if it is one of them. */
-static void anchor_at_centre(const RefBody *body, RefMotion *motion)
+/* The modes' shares of a translation are masses that make up the piece's if it is one of them. */
+static void anchor_at_centre(const RefBody *body, int piece, RefMotion *motion)
 {
     double *mass = node_masses(body), sum = 0, least = INFINITY;
-    for (long n = 0; n < motion->nodes; n++) sum += mass[n];
+    for (long n = 0; n < motion->nodes; n++)
+        if (motion->piece[n] == piece) sum += mass[n];
     for (long n = 0; n < motion->nodes; n++) mass[n] /= sum;
-    ref_motion_anchor(mass, motion);
+    ref_motion_anchor(mass, piece, motion);
     for (int d = 0; d < 3; d++) {
-        const double *drift = motion->drift + d * motion->modes;
+        const double *drift = motion->drift + (3 * piece + d) * motion->modes;
         least = fmin(least, sum * dot(motion->modes, drift, drift));
     }
     memset(mass, 0, (size_t)motion->nodes * sizeof *mass);
-    if (!(least > 1 - 1e-6)) ref_motion_anchor(mass, motion);
+    if (!(least > 1 - 1e-6)) ref_motion_anchor(mass, piece, motion);
     free(mass);
 }
 
@@ -111,7 +115,13 @@ void ref_motion_create(const RefBody *body, const RefModes *modes, const RefDamp
                        RefMotion *motion)
 {
     size_t nodes = (size_t)modes->nodes, count = (size_t)modes->count;
-    *motion = (RefMotion){.nodes = modes->nodes, .modes = modes->count, .damping = *damping};
+    *motion = (RefMotion){.nodes = modes->nodes,
+                          .modes = modes->count,
+                          .damping = *damping,
+                          .pieces = ref_body_pieces(body)};
+    motion->piece = sm_alloc(nodes, sizeof(int));
+    motion->held = sm_alloc((size_t)motion->pieces, sizeof(bool));
+    motion->sums = sm_alloc(4 * (size_t)motion->pieces, sizeof(double[3]));
     motion->lambda = sm_alloc(count, sizeof(double));
     motion->row = sm_alloc(nodes * 6 * count, sizeof(double));
     motion->z = sm_alloc(count, sizeof(double));
@@ -122,10 +132,11 @@ void ref_motion_create(const RefBody *body, const RefModes *modes, const RefDamp
     motion->moved = sm_alloc(nodes, sizeof(double[3]));
     motion->force = sm_alloc(nodes, sizeof(double[3]));
     motion->anchor = sm_alloc(nodes, sizeof(double));
-    motion->drift = sm_alloc(3 * count, sizeof(double));
+    motion->drift = sm_alloc(3 * (size_t)motion->pieces * count, sizeof(double));
+    for (long n = 0; n < modes->nodes; n++) motion->piece[n] = ref_body_piece(body, n);
     for (size_t k = 0; k < count; k++) motion->lambda[k] = fmax(modes->lambda[k], 0);
     fill_rows(body, modes, motion);
-    anchor_at_centre(body, motion);
+    for (int p = 0; p < motion->pieces; p++) anchor_at_centre(body, p, motion);
 }
 
 void ref_motion_gravity(const RefBody *body, const double g[3], RefMotion *motion)
@@ -142,6 +153,7 @@ static int append(RefMotion *motion, const RefHold *hold)
     double off[3];
     motion->hold = sm_realloc(motion->hold, (size_t)motion->holds + 1, sizeof *hold);
     motion->hold[motion->holds++] = *hold;
+    motion->held[hold->piece] = true;
     ref_motion_off(motion, motion->holds - 1, off);
     memcpy(motion->hold[motion->holds - 1].target, off, sizeof off);
     return motion->holds - 1;
@@ -154,6 +166,7 @@ int ref_motion_hold(const RefBody *body, RefHoldKind kind, const double x[3], Re
     if (ref_mls_at(&body->nodes, body->basis, x, &shape)) {
         size_t count = (size_t)shape.count, modes = (size_t)motion->modes;
         hold.count = shape.count;
+        hold.piece = motion->piece[shape.node[0]];
         hold.node = sm_alloc(count, sizeof *hold.node);
         hold.value = sm_alloc(count, sizeof *hold.value);
         memcpy(hold.node, shape.node, count * sizeof *hold.node);
@@ -167,55 +180,58 @@ int ref_motion_hold(const RefBody *body, RefHoldKind kind, const double x[3], Re
     return hold.count ? append(motion, &hold) : -1;
 }
 
-int ref_motion_hold_rows(const double *rows, RefMotion *motion)
+int ref_motion_hold_rows(const double *rows, int piece, RefMotion *motion)
 {
     size_t size = 3 * (size_t)motion->modes;
-    RefHold hold = {.kind = REF_HOLD_ROWS, .row = sm_alloc(size, sizeof *hold.row)};
+    RefHold hold = {.kind = REF_HOLD_ROWS, .piece = piece, .row = sm_alloc(size, sizeof *hold.row)};
     memcpy(hold.row, rows, size * sizeof *rows);
     return append(motion, &hold);
 }
 
-static void drift_of(const RefMotion *motion, double t[3])
+static void drift_of(const RefMotion *motion, int piece, double t[3])
 {
-    ref_frame_sums.apply(motion->modes, 3, motion->drift, motion->z, t);
+    ref_frame_sums.apply(motion->modes, 3, motion->drift + 3 * piece * motion->modes, motion->z, t);
 }
 
 /* A force on all nodes, as it acts on the modes: turned back at each node, but for what displaces
- * the anchor of a body that nothing holds: that is the sum, which is not turned. */
+ * the anchor of a piece that nothing holds: that is the sum, which is not turned. */
 typedef struct {
-    double all[3];    /* sum */
-    double turned[3]; /* sum of what was turned back */
-    double *modal;    /* [modes] added to */
+    double (*all)[3];    /* [pieces] sums */
+    double (*turned)[3]; /* [pieces] sums of what was turned back */
+    double *modal;       /* [modes] added to */
 } Pull;
 
 static Pull pull_of(const RefMotion *motion, const double (*force)[3], double *modal)
 {
-    Pull pull = {.modal = modal};
+    Pull pull = {motion->sums, motion->sums + motion->pieces, modal};
+    memset(pull.all, 0, 2 * (size_t)motion->pieces * sizeof *pull.all);
     for (long n = 0; n < motion->nodes; n++)
-        for (int d = 0; d < 3; d++) pull.all[d] += force[n][d];
+        for (int d = 0; d < 3; d++) pull.all[motion->piece[n]][d] += force[n][d];
     return pull;
 }
 
-static void pull_node(const RefMotion *motion, long n, const double force[3], Pull *pull)
+static void pull_node(const RefMotion *motion, long n, const double force[3], const Pull *pull)
 {
-    int modes = motion->modes;
+    int modes = motion->modes, piece = motion->piece[n];
     const double *row = motion->row + (size_t)n * 6 * (size_t)modes;
-    double R[9], F[3], f[3], share = motion->holds ? 0 : motion->anchor[n];
-    for (int d = 0; d < 3; d++) F[d] = force[d] - share * pull->all[d];
+    double R[9], F[3], f[3], share = motion->held[piece] ? 0 : motion->anchor[n];
+    for (int d = 0; d < 3; d++) F[d] = force[d] - share * pull->all[piece][d];
     if (F[0] == 0 && F[1] == 0 && F[2] == 0) return;
     ref_rotation(motion->rotation[n], R);
     for (int d = 0; d < 3; d++) {
         f[d] = R[d] * F[0] + R[3 + d] * F[1] + R[6 + d] * F[2];
-        pull->turned[d] += f[d];
+        pull->turned[piece][d] += f[d];
     }
     ref_frame_sums.add(modes, f, row, pull->modal);
 }
 
 static void pull_drift(const RefMotion *motion, const Pull *pull)
 {
-    double rest[3];
-    for (int d = 0; d < 3; d++) rest[d] = pull->all[d] - pull->turned[d];
-    ref_frame_sums.add(motion->modes, rest, motion->drift, pull->modal);
+    for (int p = 0; p < motion->pieces; p++) {
+        double rest[3];
+        for (int d = 0; d < 3; d++) rest[d] = pull->all[p][d] - pull->turned[p][d];
+        ref_frame_sums.add(motion->modes, rest, motion->drift + 3 * p * motion->modes, pull->modal);
+    }
 }
 
 /* Rotation and local displacement of one node from z. */
@@ -238,21 +254,24 @@ static void warp(const double w[3], const double local[3], const double t[3], do
 /* A node's part of the modal force is found while its rows are at hand. */
 void ref_motion_pose(RefMotion *motion)
 {
-    double t[3], shift[3];
+    double(*t)[3] = motion->sums + 2 * motion->pieces, (*shift)[3] = t + motion->pieces;
     memset(motion->load, 0, (size_t)motion->modes * sizeof *motion->load);
     Pull pull = pull_of(motion, (const double(*)[3])motion->force, motion->load);
-    drift_of(motion, t);
-    memcpy(shift, t, sizeof shift);
+    for (int p = 0; p < motion->pieces; p++) {
+        drift_of(motion, p, t[p]);
+        memcpy(shift[p], t[p], sizeof *shift);
+    }
     for (long n = 0; n < motion->nodes; n++) {
+        int p = motion->piece[n];
         node_at(motion, n, motion->rotation[n], motion->local[n]);
-        warp(motion->rotation[n], motion->local[n], t, motion->moved[n]);
-        for (int d = 0; d < 3 && !motion->holds; d++)
-            shift[d] -= motion->anchor[n] * motion->moved[n][d];
+        warp(motion->rotation[n], motion->local[n], t[p], motion->moved[n]);
+        for (int d = 0; d < 3 && !motion->held[p]; d++)
+            shift[p][d] -= motion->anchor[n] * motion->moved[n][d];
         pull_node(motion, n, motion->force[n], &pull);
     }
     pull_drift(motion, &pull);
     for (long n = 0; n < motion->nodes; n++)
-        for (int d = 0; d < 3; d++) motion->moved[n][d] += shift[d];
+        for (int d = 0; d < 3; d++) motion->moved[n][d] += shift[motion->piece[n]][d];
 }
 
 void ref_motion_push(const double (*impulse)[3], RefMotion *motion)
@@ -272,7 +291,7 @@ void ref_motion_off(const RefMotion *motion, int number, double off[3])
             off[d] += dot(motion->modes, hold->row + d * motion->modes, motion->z);
         return;
     }
-    drift_of(motion, t);
+    drift_of(motion, hold->piece, t);
     for (int d = 0; d < 3; d++) off[d] += t[d];
     for (int n = 0; n < hold->count; n++) {
         double w[3], local[3], moved[3];
@@ -291,8 +310,9 @@ static void jacobian(const RefMotion *motion, const RefHold *hold, double *J)
         memcpy(J, hold->row, 3 * modes * sizeof *J);
         return;
     }
-    drift_of(motion, t);
-    memcpy(J, motion->drift, 3 * modes * sizeof *J);
+    const double *drift = motion->drift + 3 * (size_t)hold->piece * modes;
+    drift_of(motion, hold->piece, t);
+    memcpy(J, drift, 3 * modes * sizeof *J);
     for (int n = 0; n < hold->count; n++) {
         const double *row = motion->row + (size_t)hold->node[n] * 6 * modes;
         double w[3], local[3], by_local[9], by_turn[9];
@@ -309,7 +329,7 @@ static void jacobian(const RefMotion *motion, const RefHold *hold, double *J)
                 double a = hold->value[n] * by_local[3 * d + e];
                 double b = hold->value[n] * by_turn[3 * d + e];
                 for (size_t k = 0; k < modes; k++)
-                    J[d * modes + k] += a * (row[e * modes + k] - motion->drift[e * modes + k]) +
+                    J[d * modes + k] += a * (row[e * modes + k] - drift[e * modes + k]) +
                                         b * row[(3 + e) * modes + k];
             }
     }
@@ -430,22 +450,24 @@ double ref_motion_energy(const RefMotion *motion)
     return sum;
 }
 
-/* The local displacements that warp into where `from` is now, by its rotations, about an anchor of
- * this motion's: with Rt turned back, sum anchor Rt^-1 (moved - t) = 0 says what its drift t is. */
-static void unwarp(const RefMotion *from, const double *anchor, double *local)
+/* The local displacements of a piece that warp into where `from` is now, by its rotations, about an
+ * anchor of this motion's: with Rt turned back, sum anchor Rt^-1 (moved - t) = 0 says what its drift
+ * t is. */
+static void unwarp(const RefMotion *from, const RefMotion *motion, int piece, double *local)
 {
     double sum[9] = {0}, right[3] = {0}, t[3];
     for (long n = 0; n < from->nodes; n++)
-        for (int e = 0; e < 4; e++) {
+        for (int e = 0; e < 4 && motion->piece[n] == piece; e++) {
             double axis[3] = {e == 0, e == 1, e == 2}, back[3];
             ref_rotation_unmean(from->rotation[n], e < 3 ? axis : from->moved[n], back);
             for (int d = 0; d < 3; d++)
-                *(e < 3 ? sum + 3 * d + e : right + d) += anchor[n] * back[d];
+                *(e < 3 ? sum + 3 * d + e : right + d) += motion->anchor[n] * back[d];
         }
     memcpy(t, right, sizeof t);
     if (!ref_dense_any(3, sum, t)) memcpy(t, right, sizeof t);
     for (long n = 0; n < from->nodes; n++) {
         double beside[3], back[3];
+        if (motion->piece[n] != piece) continue;
         for (int d = 0; d < 3; d++) beside[d] = from->moved[n][d] - t[d];
         ref_rotation_unmean(from->rotation[n], beside, back);
         for (int d = 0; d < 3; d++) local[3 * n + d] = t[d] + back[d];
@@ -478,7 +500,7 @@ void ref_motion_take(const RefBody *body, RefMotion *from, double h, RefMotion *
         double step = end ? h : -h;
         for (int k = 0; k < from->modes; k++) from->z[k] += step * from->speed[k];
         ref_motion_pose(from);
-        unwarp(from, motion->anchor, local);
+        for (int p = 0; p < motion->pieces; p++) unwarp(from, motion, p, local);
         ref_sparse_apply(&body->matrices.mass, 3, local, Mu);
         memset(ends[end], 0, modes * sizeof(double));
         for (size_t n = 0; n < (size_t)motion->nodes; n++)

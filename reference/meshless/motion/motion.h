@@ -1,11 +1,12 @@
 /* motion.h - a meshless body that moves: modal warping, the implicit step, constraints (meshless
  * section 5.3).
  *
- * The state is the modes' amplitudes z and their velocities. The body as a whole is displaced by
- * `drift` z, the displacement of its anchor: its centre of mass, or a grip (grip.h). What a node
- * moves beside that is turned by the rotation integrated up to half the modes' curl there. Small
- * motions are exact, and so is a rotation of the whole about one axis, of any size, with any
- * translation; a free body's centre of mass moves as its drift does, whatever its shape.
+ * The state is the modes' amplitudes z and their velocities. The body as a whole, or each piece of
+ * one that cracks have parted (body.h), is displaced by `drift` z, the displacement of its anchor:
+ * its centre of mass, or a grip (grip.h). What a node moves beside that is turned by the rotation
+ * integrated up to half the modes' curl there. Small motions are exact, and so is a rotation of the
+ * whole about one axis, of any size, with any translation; a free piece's centre of mass moves as
+ * its drift does, whatever its shape.
  *
  * Every node turns along a path of its own, straight in z, and so bending shortens: what eq. 28
  * says of an arc of constant curvature k is x(s) = s cos(k s / 2) (cos(k s / 2), sin(k s / 2)),
@@ -31,6 +32,7 @@ typedef enum { REF_HOLD_POSITION, REF_HOLD_ROTATION, REF_HOLD_ROWS } RefHoldKind
 
 typedef struct {
     RefHoldKind kind;
+    int piece;        /* of the body */
     double target[3]; /* the point's displacement, the rotation vector, or the functions' values */
     int count;        /* nodes that cover the point; 0 of rows */
     int *node;
@@ -45,19 +47,23 @@ typedef struct {
     double size;    /* the nodes' longest extent */
     double *lambda; /* [modes] */
     double *row;    /* [nodes][6][modes]: the modes' displacement at a node, and half their curl */
-    double *anchor; /* [nodes] weights of sum 1: what is displaced by the drift */
-    double *drift;  /* [3][modes] */
+    int pieces;
+    int *piece;     /* [nodes] */
+    bool *held;     /* [pieces] a constraint binds it */
+    double *anchor; /* [nodes] weights of sum 1 a piece: what is displaced by the drift */
+    double *drift;  /* [pieces][3][modes] */
     double *z, *speed, *load; /* [modes] amplitudes, velocities, modal force */
     double (*rotation)[3];    /* [nodes] w */
     double (*local)[3];       /* [nodes] Psi z */
     double (*moved)[3];       /* [nodes] displacement */
     double (*force)[3];       /* [nodes] N, the caller's to fill in; kept from step to step */
+    double (*sums)[3]; /* [4 pieces] of a pose */
     int holds;
     RefHold *hold;
 } RefMotion;
 
-/* A body at rest, anchored at its centre of mass where translations are among its modes, and
- * nowhere where they are not: then drift is 0. Copies what it needs. */
+/* A body at rest, each piece anchored at its centre of mass where its translations are among the
+ * modes, and nowhere where they are not: then its drift is 0. Copies what it needs. */
 void ref_motion_create(const RefBody *body, const RefModes *modes, const RefDamping *damping,
                        RefMotion *motion);
 void ref_motion_free(RefMotion *motion);
@@ -70,12 +76,12 @@ void ref_motion_gravity(const RefBody *body, const double g[3], RefMotion *motio
  * it is. */
 int ref_motion_hold(const RefBody *body, RefHoldKind kind, const double x[3], RefMotion *motion);
 
-/* Binds three linear functions of z, [3][modes], where they are; returns the constraint's number.
- */
-int ref_motion_hold_rows(const double *rows, RefMotion *motion);
+/* Binds three linear functions of z, [3][modes], of a piece, where they are; returns the
+ * constraint's number. */
+int ref_motion_hold_rows(const double *rows, int piece, RefMotion *motion);
 
-/* Anchors the body at other weights, [nodes], of sum 1. */
-void ref_motion_anchor(const double *weight, RefMotion *motion);
+/* Anchors a piece at other weights, [nodes], of sum 1 over its nodes. */
+void ref_motion_anchor(const double *weight, int piece, RefMotion *motion);
 
 /* From z: rotations, displacements, and the modal force Psi^T R^T F. O(nodes * modes). */
 void ref_motion_pose(RefMotion *motion);

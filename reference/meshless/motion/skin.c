@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "../../../lib/vector.h"
+#include "../body/covers.h"
 #include "frame_sums.h"
 
 enum { BLOCK = 64, LANES = REF_SKIN_LANES };
@@ -236,17 +237,7 @@ static bool weigh_in_body(const void *data, long point, RefShape *shape, double 
 static int nearest_in_body(const void *data, long point)
 {
     const InBody *in = data;
-    const RefNodes *nodes = &in->body->nodes;
-    int best = 0;
-    double least = INFINITY;
-    for (long n = 0; n < nodes->count; n++) {
-        double square = sm_square_between(nodes->position[n], in->x[point]);
-        if (square < least) {
-            least = square;
-            best = (int)n;
-        }
-    }
-    return best;
+    return (int)ref_mls_nearest(&in->body->nodes, in->x[point]);
 }
 
 void ref_skin_create(const RefBody *body, long count, const double (*x)[3], RefSkin *skin,

@@ -52,8 +52,9 @@ void ref_skin_renew(const RefSkinCarrier *carrier,
                     bool (*stale)(const void *data, long cell, int nodes, const int *node),
                     RefSkin *skin, long *loose);
 
-/* Points that too few nodes cover move with the node nearest to them; `loose` (may be NULL)
- * receives how many there are: none of those that ref_body_build() was shown. */
+/* Points that too few nodes cover move with the node nearest to them, if there is one on their side
+ * of cracks with that; `loose` (may be NULL) receives how many there are: none of those that
+ * ref_body_build() was shown. */
 void ref_skin_create(const RefBody *body, long count, const double (*x)[3], RefSkin *skin,
                      long *loose);
 void ref_skin_free(RefSkin *skin);
