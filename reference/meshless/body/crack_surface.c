@@ -9,8 +9,6 @@
 #include "../../../lib/vector.h"
 #include "mls.h"
 
-/* b in a node's reach. */
-static const double FRONT_REACH = 1.0 / 3;
 enum { PARTS = 8, HALVINGS = 5, MOST_PARTS = 4096 };
 
 void ref_crack_surface_free(RefCrackSurface *cracks)
@@ -205,7 +203,7 @@ bool ref_crack_surface_pass(const void *data, const double x[3], const double fr
     memcpy(part, whole, sizeof whole);
     for (long t = 0; (t = sm_cut_first_crossed(&cracks->cut, t, x, from)) >= 0; t++) {
         double f[4];
-        if (!pass_triangle(cracks, t, x, from, FRONT_REACH * reach, f)) return false;
+        if (!pass_triangle(cracks, t, x, from, REF_FRONT_REACH * reach, f)) return false;
         for (int d = 1; d < 4; d++) part[d] = f[0] * part[d] + f[d] * part[0];
         part[0] *= f[0];
     }

@@ -30,7 +30,7 @@ static void random_place(double x[3])
 TEST(a_straight_front_lets_through_what_the_spline_says)
 {
     RefCrackSurface cracks = crack_to(0.5, 1);
-    double reach = 0.6, b = reach / 3;
+    double reach = 2.4, b = REF_FRONT_REACH * reach;
     long parts = 0, crossings = 0;
     for (int n = 0; n < 20000; n++) {
         double x[3], node[3], part[6], back[6], slope[2];
@@ -66,13 +66,13 @@ TEST(slopes_are_differences)
         double x[3], node[3], part[6], step = 1e-6;
         random_place(x);
         random_place(node);
-        if (!ref_crack_surface_pass(&cracks, x, node, 0.6, part) || part[0] == 1) continue;
+        if (!ref_crack_surface_pass(&cracks, x, node, 2.4, part) || part[0] == 1) continue;
         seen++;
         for (int d = 0; d < 3; d++) {
             double side[2] = {0}, y[3] = {x[0], x[1], x[2]}, there[6];
             for (int k = 0; k < 2; k++) {
                 y[d] = x[d] + (k ? step : -step);
-                if (ref_crack_surface_pass(&cracks, y, node, 0.6, there)) side[k] = there[0];
+                if (ref_crack_surface_pass(&cracks, y, node, 2.4, there)) side[k] = there[0];
             }
             double off = fabs((side[1] - side[0]) / (2 * step) - part[1 + d]);
             kinks += off > 1e-4 * (1 + fabs(part[1 + d]));
@@ -103,8 +103,8 @@ TEST(triangles_do_not_matter)
         random_place(x);
         random_place(node);
         const RefCrackSurface *other = n % 2 ? &many : &grown;
-        bool passes = ref_crack_surface_pass(&one, x, node, 0.6, a);
-        assert_int_equal(passes, ref_crack_surface_pass(other, x, node, 0.6, b));
+        bool passes = ref_crack_surface_pass(&one, x, node, 2.4, a);
+        assert_int_equal(passes, ref_crack_surface_pass(other, x, node, 2.4, b));
         for (int k = 0; passes && k < 4; k++) assert_true(fabs(a[k] - b[k]) < 1e-9);
         parts += passes && a[0] < 1;
     }

@@ -175,8 +175,7 @@ static void displacement(const RefBody *body, const double *u, const double x[3]
 
 /* A bar that is pulled opens a crack in its middle by as much to either side, most at its mouth. It
  * gives way by what fracture mechanics says: of an edge crack a deep in a bar w wide by
- * (4 sigma a / E) V(a / w) (Tada, Paris and Irwin; Irwin's correction for the front is below what
- * the transparency is wide). */
+ * (4 sigma a / E) V(a / w) (Tada, Paris and Irwin), where stress is plane; where strain is, 9% less. */
 TEST(a_crack_opens_as_theory_says)
 {
     needs_solver();
@@ -189,11 +188,11 @@ TEST(a_crack_opens_as_theory_says)
     double whole = opening(&bar, 1000, u);
     assert_true(fabs(whole / (1000 * 3 / steel.young) - 1) < 0.02);
     double a = 0.5, V = 0.99 - a * (1 - a) * (1.3 - 1.2 * a + 0.7 * a * a);
-    double theory = 4 * 1000 / steel.young * a * V * pow(a / (1 - a), 2);
+    double theory = 4 * 1000 / steel.young * a * V * a / (1 - a) / (1 - a);
     RefBody cracked = cracked_bar(&bar, 1.5, a);
     double more = opening(&cracked, 1000, u) - whole, before = INFINITY;
     print_message("[  NOTE    ] opens by %.3f of theory\n", more / theory);
-    assert_true(more / theory > 0.8 && more / theory < 1.2);
+    assert_true(more / theory > 0.88 && more / theory < 1.03);
     for (int n = 0; n < 5; n++) {
         double side[2][3];
         for (int k = 0; k < 2; k++) {
