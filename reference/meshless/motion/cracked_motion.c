@@ -155,6 +155,34 @@ static void amplitudes(const RefMotion *motion, const double *load, double *z)
                 z[k] += load[3 * n + d] * motion->row[(6 * n + d) * modes + k];
 }
 
+static double elastic_energy(const RefMotion *motion, double beta)
+{
+    double sum = 0;
+    for (int k = 0; k < motion->modes; k++) {
+        double z = motion->z[k] / (1 + beta * motion->lambda[k]);
+        sum += 0.5 * motion->lambda[k] * z * z;
+    }
+    return sum;
+}
+
+/* What comes nearest in the kinetic energy's norm of all that is no more strained than before:
+ * z / (1 + beta lambda), beta a Lagrange multiplier. Velocities are made less likewise. */
+static void relax(const RefMotion *from, RefMotion *motion)
+{
+    double most = elastic_energy(from, 0), low = 0, high = 1e-6, stiffest = 0;
+    for (int k = 0; k < motion->modes; k++) stiffest = fmax(stiffest, motion->lambda[k]);
+    if (elastic_energy(motion, 0) <= most || !(stiffest > 0)) return;
+    for (high /= stiffest; elastic_energy(motion, high) > most && isfinite(high);) high *= 2;
+    for (int n = 0; n < 60; n++) {
+        double middle = (low + high) / 2;
+        *(elastic_energy(motion, middle) > most ? &low : &high) = middle;
+    }
+    for (int k = 0; k < motion->modes; k++) {
+        motion->z[k] /= 1 + high * motion->lambda[k];
+        motion->speed[k] /= 1 + high * motion->lambda[k];
+    }
+}
+
 static End end_create(long nodes, int pieces, long now)
 {
     return (End){.turn = sm_alloc((size_t)nodes, sizeof(double[9])),
@@ -189,6 +217,7 @@ void ref_motion_take_cracked(const RefBody *body, const RefBody *before, double 
     amplitudes(motion, over.end[1].load, motion->z);
     for (int k = 0; k < motion->modes; k++)
         motion->speed[k] = (motion->z[k] - motion->speed[k]) / h;
+    relax(from, motion);
     for (int e = 0; e < 2; e++) {
         End *end = over.end + e;
         sm_free_all(end->turn, end->moved, end->t, end->T, end->load);
