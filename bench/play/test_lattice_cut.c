@@ -192,6 +192,7 @@ TEST(wrong_engine)
     Run run;
     SmError error;
     assert_int_equal(start(BEAM "cuts = ( { stop = 1; } );", "brute", &run, &error), SM_INPUT);
-    assert_non_null(strstr(error.text, "cut.cfg: 'cuts' need the engine fastlsm, octree or meshless"));
+    assert_non_null(
+        strstr(error.text, "cut.cfg: 'cuts' need the engine fastlsm, octree or meshless"));
     bench_body_free(&run.body);
 }

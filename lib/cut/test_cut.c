@@ -81,6 +81,13 @@ TEST(random_segments_cross_what_they_cross)
         crossed += expected;
         assert_int_equal(sm_cut_crosses(&cut, 0, a, b), expected);
         assert_int_equal(sm_cut_crosses(&cut, 0, b, a), expected);
+        long next = sm_cut_first_crossed(&cut, 0, a, b);
+        for (long t = 0; t < cut.triangles; t++) {
+            if (!sm_cut_crosses_one(&cut, t, a, b)) continue;
+            assert_int_equal(next, t);
+            next = sm_cut_first_crossed(&cut, t + 1, b, a);
+        }
+        assert_int_equal(next, -1);
     }
     assert_in_range(crossed, 1000, 19000);
     sm_cut_free(&cut);

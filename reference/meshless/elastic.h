@@ -8,7 +8,8 @@
 
 /* Fills body and seconds: octants, nodes, covers and matrices of the options' field,
  * whose covers reach `count` points. Where *x is NULL these are the field's own, which it then
- * receives, the caller's to free. The field of a body that may be cut is kept. Errors: those of ref_meshless_field() and ref_body_build(). */
+ * receives, the caller's to free. The field of a body that may be cut is kept. Errors: those of
+ * ref_meshless_field() and ref_body_build(). */
 SmCode ref_elastic_body(const RefMeshlessOptions *options, bool cuttable, long *count,
                         double (**x)[3], RefElastic *elastic, SmError *error);
 

@@ -27,7 +27,7 @@ struct SmEngine {
     bool points;       /* particles are the field's points, not the lattice's */
     bool stored;       /* modes are those that were stored, whatever holds the body */
     bool cuttable;
-    int modes;         /* of the whole body */
+    int modes; /* of the whole body */
     double gravity[3];
     RefElastic elastic;
     long *place; /* [all] where a particle is in the skin */
@@ -85,9 +85,10 @@ SmCode ref_meshless_check(const SmVoxels *voxels, const SmEngineParams *params, 
     if (params->strain_limit > 0 && isfinite(params->strain_limit))
         return sm_fail(error, SM_INPUT, "strain_limit: meshless bodies do not break; leave it out");
     if (params->strain_limit > 0 && params->meshless->stored)
-        return sm_fail(error, SM_INPUT,
-                       "a stored elastic body cannot be cut: its modes are those that it was stored "
-                       "with");
+        return sm_fail(
+            error, SM_INPUT,
+            "a stored elastic body cannot be cut: its modes are those that it was stored "
+            "with");
     if (!(params->damping < 1))
         return sm_fail(error, SM_INPUT, "damping is 1, which stops a meshless body: give less");
     return SM_OK;
@@ -102,8 +103,8 @@ static SmCode make_body(const RefMeshlessOptions *options, SmEngine *engine, SmE
         ref_stored_body(options->stored, &options->material, &elastic->body, &elastic->modes);
         return SM_OK;
     }
-    SmCode code = ref_elastic_body(options, engine->cuttable, &engine->count, &engine->rest,
-                                   elastic, error);
+    SmCode code =
+        ref_elastic_body(options, engine->cuttable, &engine->count, &engine->rest, elastic, error);
     if (engine->points) engine->all = engine->count;
     if (code == SM_OK) code = ref_elastic_modes(options, elastic, error);
     engine->modes = elastic->modes.count;
@@ -316,7 +317,8 @@ double ref_meshless_show(SmEngine *engine, int mode, double far)
 {
     const RefModes *modes = &engine->elastic.modes;
     size_t count = (size_t)modes->count;
-    size_t k = (size_t)(mode + REF_RIGID_MODES * ref_body_pieces(&engine->elastic.body));
+    size_t rigid = REF_RIGID_MODES * (size_t)ref_body_pieces(&engine->elastic.body);
+    size_t k = (size_t)mode + rigid;
     double most = 0;
     assert(!engine->points && mode >= 0 && mode < ref_meshless_shapes(engine));
     for (long n = 0; n < modes->nodes; n++) {
@@ -486,11 +488,11 @@ static SmCode meshless_cut(SmEngine *engine, const SmCut *cut, long first, SmErr
     RefBody cracked, before = elastic->body;
     RefModes modes;
     if (!engine->cuttable)
-        return sm_fail(error, SM_USAGE,
-                       "the body was not made to be cut; create it with a strain_limit of INFINITY");
-    SmCode code =
-        ref_body_crack(&before, cut, first, &elastic->field, &elastic->material, engine->all,
-                       CONST(engine->rest), &cracked, error);
+        return sm_fail(
+            error, SM_USAGE,
+            "the body was not made to be cut; create it with a strain_limit of INFINITY");
+    SmCode code = ref_body_crack(&before, cut, first, &elastic->field, &elastic->material,
+                                 engine->all, CONST(engine->rest), &cracked, error);
     if (code != SM_OK) return code;
     code = find_modes(engine, &cracked, &modes, error);
     if (code != SM_OK) {

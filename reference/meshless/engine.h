@@ -7,9 +7,9 @@
  * `unstopped` says so.
  *
  * A body that was created to be cut (a strain limit of INFINITY) is: a cut is a crack
- * (body/crack_surface.h), and what it changes is made again: nodes, matrices and modes, in seconds a
- * cut of a body of 1,000 nodes. Particles beside it move with what is on their side. A stored body
- * is not cut, as its modes are those that it was stored with.
+ * (body/crack_surface.h), and what it changes is made again: nodes, matrices and modes, in seconds
+ * a cut of a body of 1,000 nodes. Particles beside it move with what is on their side. A stored
+ * body is not cut, as its modes are those that it was stored with.
  *
  * A handle grips the body at some of its particles (grip.h), a little more than one for every
  * second node there: these move with it to 1e-6, and those between them as the body does, by a few
@@ -38,9 +38,9 @@ typedef struct RefStored RefStored; /* stored.h */
 typedef enum { REF_MESHLESS_LINEAR, REF_MESHLESS_QUADRATIC } RefMeshlessBasis;
 
 struct RefMeshlessOptions {
-    const SmMesh *mesh;  /* the body's closed surface, read by create() only */
-    const RefMpu *given; /* NULL, or the field of points that were given: they are carried, too;
-                          * the caller's, and kept of a body that may be cut */
+    const SmMesh *mesh;      /* the body's closed surface, read by create() only */
+    const RefMpu *given;     /* NULL, or the field of points that were given: they are carried, too;
+                              * the caller's, and kept of a body that may be cut */
     const RefStored *stored; /* NULL, or the body and its modes (stored.h): none are sought then */
     long points;  /* on the mesh's surface, of which the field is made without `given`; 0:
                    * REF_MESHLESS_POINTS, of thin bodies more, to REF_MESHLESS_MOST_POINTS */

@@ -427,7 +427,8 @@ TEST(a_cut_beam_flies_on_in_pieces)
     scene_free(&scene);
 }
 
-/* How far a cantilever sags at x under its own weight a length: Timoshenko's, of a square 1 wide. */
+/* How far a cantilever sags at x under its own weight a length: Timoshenko's, of a square 1 wide.
+ */
 static double cantilever_sag(double weight, double length, double x)
 {
     double young = 1e5, shear = 10 * 1.3 / (12 + 11 * 0.3) * young / 2.6;

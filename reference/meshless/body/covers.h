@@ -6,8 +6,8 @@
 
 /* How many of the points the shape functions are not defined at, after the covers of the nodes
  * nearest to such points, on their side of cracks, were enlarged (up to eight times, each time of
- * more nodes). Changes reaches and bins. For a body whose surface runs along octants' faces this is the rule: its
- * corners have one octant, and covers of three edges only touch them. */
+ * more nodes). Changes reaches and bins. For a body whose surface runs along octants' faces this is
+ * the rule: its corners have one octant, and covers of three edges only touch them. */
 long ref_mls_cover(RefNodes *nodes, RefBasis basis, long count, const double (*x)[3]);
 
 /* Whether no crack takes most of what node n's weight is at x. */

@@ -62,8 +62,7 @@ static void find_sheets(RefCrackSurface *cracks)
             sm_pieces_link(&pieces, cut->triangle[t][0], cut->triangle[t][k]);
     sm_pieces_finish(&pieces, NULL, cut->vertices);
     cracks->sheet = sm_alloc((size_t)cut->triangles, sizeof *cracks->sheet);
-    for (long t = 0; t < cut->triangles; t++)
-        cracks->sheet[t] = pieces.piece[cut->triangle[t][0]];
+    for (long t = 0; t < cut->triangles; t++) cracks->sheet[t] = pieces.piece[cut->triangle[t][0]];
     sm_pieces_free(&pieces);
 }
 
@@ -190,8 +189,7 @@ static bool pass_triangle(const RefCrackSurface *cracks, long triangle, const do
     if (!(s < 1)) return false;
     part[0] = ref_mls_spline(s, c_slope);
     double turn = D != 0 ? sm_dot(slope, way) / D : 0;
-    for (int d = 0; d < 3; d++)
-        part[1 + d] = c_slope[0] * t / width * (slope[d] - turn * plane[d]);
+    for (int d = 0; d < 3; d++) part[1 + d] = c_slope[0] * t / width * (slope[d] - turn * plane[d]);
     return true;
 }
 

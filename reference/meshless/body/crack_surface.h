@@ -6,10 +6,10 @@
  * is the distance from where the way from the node to x meets the crack to the front, c the
  * weights' spline and b a twelfth of the node's reach, an eighth of a cell of linear functions
  * (Organ, Fleming, Terry and Belytschko 1996; covers that are cubes have three arguments, so that
- * the weight is multiplied instead of its argument enlarged). The wider b, the shorter a crack seems:
- * of four to five cells' depth one opens by 0.97 of what theory says, and with half a cell by 0.6
- * (test_cracked_body.c). Where several cracks are crossed, all count.
- * Slopes jump where two parts of the front are equally near, and where the triangles' normal does.
+ * the weight is multiplied instead of its argument enlarged). The wider b, the shorter a crack
+ * seems: of four to five cells' depth one opens by 0.97 of what theory says, and with half a cell
+ * by 0.6 (test_cracked_body.c). Where several cracks are crossed, all count. Slopes jump where two
+ * parts of the front are equally near, and where the triangles' normal does.
  */
 #ifndef REF_CRACK_SURFACE_H
 #define REF_CRACK_SURFACE_H
@@ -33,8 +33,8 @@ typedef struct {
 } RefCrackSurface;
 
 /* The triangles of `before`, unless that is NULL, and of `cut` from number `first` on, which has
- * grown since: it has the vertices of before, too. The front is of the body of `field`, in pieces whose
- * ends are good to a 256th of `cell`. Keeps no pointer to its arguments. The caller frees.
+ * grown since: it has the vertices of before, too. The front is of the body of `field`, in pieces
+ * whose ends are good to a 256th of `cell`. Keeps no pointer to its arguments. The caller frees.
  * O(triangles log triangles). */
 void ref_crack_surface_create(const RefCrackSurface *before, const SmCut *cut, long first,
                               const RefField *field, double cell, RefCrackSurface *cracks);

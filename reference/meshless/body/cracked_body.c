@@ -196,8 +196,7 @@ static SmCode cover(RefBody *body, long count, const double (*shown)[3], SmError
     for (size_t p = 0; p < points; p++) memcpy(x[p], body->octants.point[p].x, sizeof x[p]);
     if (count) memcpy(x + points, shown, (size_t)count * sizeof *x);
     ref_mls_cover(&body->nodes, body->basis, (long)all, (const double(*)[3])x);
-    do
-        see(body, seen);
+    do see(body, seen);
     while (leave_out(body, seen) && body->nodes.count >= REF_LEAST_NODES);
     sm_free_all(x, seen);
     body->cracks->added = body->nodes.count - body->cracks->whole.count;
@@ -238,8 +237,8 @@ SmCode ref_body_crack(const RefBody *body, const SmCut *cut, long first, const R
     const RefBodyCracks *before = body->cracks;
     RefBodyCracks *cracks = sm_alloc(1, sizeof *cracks);
     size_t points = (size_t)body->octants.points;
-    *cracked = (RefBody){
-        .octants = copy_octants(&body->octants), .basis = body->basis, .cracks = cracks};
+    *cracked =
+        (RefBody){.octants = copy_octants(&body->octants), .basis = body->basis, .cracks = cracks};
     ref_crack_surface_create(before ? &before->surface : NULL, cut, first, field,
                              body->octants.cell, &cracks->surface);
     cracks->whole = ref_nodes_copy(before ? &before->whole : &body->nodes);

@@ -239,8 +239,8 @@ static void extend(const RefPoint *point, const RefWall *wall, Local *local)
     }
 }
 
-/* Where a place of an octant is seen from: a little nearer to its middle, so that what a crack along
- * a wall parts is on the octant's side of it. */
+/* Where a place of an octant is seen from: a little nearer to its middle, so that what a crack
+ * along a wall parts is on the octant's side of it. */
 static void look(const double x[3], const double middle[3], double eye[3])
 {
     for (int d = 0; d < 3; d++) eye[d] = x[d] + 1e-6 * (middle[d] - x[d]);
@@ -295,8 +295,8 @@ static void sum_walls(const RefOctants *tree, long o, const RefNodes *nodes, Ref
  * up to the body's surface: then constant stress is in balance wherever shape functions are, and
  * the patch test is passed (Chen, Wu, Yoon and You 2001; here the gradients keep how they vary in
  * the octant, which leaves no soft modes). Where walls do not close, which is as well as the
- * surface is cut, the rest is taken out, so that linear functions have their gradients exactly. Where
- * a crack passes through an octant, it stays as it is. */
+ * surface is cut, the rest is taken out, so that linear functions have their gradients exactly.
+ * Where a crack passes through an octant, it stays as it is. */
 static void balance_gradients(const RefOctants *tree, long o, const RefNodes *nodes, RefBasis basis,
                               RefShape *shape, Local *local)
 {

@@ -207,8 +207,8 @@ TEST(slopes_of_functions_at_a_front)
     nodes.cut = (RefCut){ref_crack_surface_pass, &cracks};
     for (long n = 0; n < nodes.count; n++) nodes.reach[n] *= 1.6;
     ref_nodes_bin(&nodes);
-    RefShape at = ref_shape_create(&nodes), side[2] = {ref_shape_create(&nodes),
-                                                       ref_shape_create(&nodes)};
+    RefShape at = ref_shape_create(&nodes),
+             side[2] = {ref_shape_create(&nodes), ref_shape_create(&nodes)};
     double step = 1e-7;
     for (int n = 0; n < 300; n++) {
         double x[3] = {random_between(&seed, 0.35, 0.6), random_between(&seed, 0.3, 0.7),

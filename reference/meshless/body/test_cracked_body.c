@@ -175,7 +175,8 @@ static void displacement(const RefBody *body, const double *u, const double x[3]
 
 /* A bar that is pulled opens a crack in its middle by as much to either side, most at its mouth. It
  * gives way by what fracture mechanics says: of an edge crack a deep in a bar w wide by
- * (4 sigma a / E) V(a / w) (Tada, Paris and Irwin), where stress is plane; where strain is, 9% less. */
+ * (4 sigma a / E) V(a / w) (Tada, Paris and Irwin), where stress is plane; where strain is, 9%
+ * less. */
 TEST(a_crack_opens_as_theory_says)
 {
     needs_solver();
@@ -210,8 +211,8 @@ TEST(a_crack_opens_as_theory_says)
     ref_body_free(&bar);
 }
 
-/* Two cracks so close that no node lies between them, and one that leaves a flake: what has no nodes
- * is blind, the rest is whole. */
+/* Two cracks so close that no node lies between them, and one that leaves a flake: what has no
+ * nodes is blind, the rest is whole. */
 TEST(what_no_node_is_left_is_blind)
 {
     needs_solver();

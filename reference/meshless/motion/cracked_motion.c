@@ -50,8 +50,8 @@ static void share_masses(HandOver *over)
     }
 }
 
-/* A held piece's anchor is that of its grip: of nodes that there were, or of the old functions where
- * a node is new. */
+/* A held piece's anchor is that of its grip: of nodes that there were, or of the old functions
+ * where a node is new. */
 static void share_anchors(HandOver *over)
 {
     const RefNodes *nodes = &over->body->nodes;
@@ -133,9 +133,8 @@ static void add_loads(HandOver *over)
                 const double *turn = end->turn[over->then.node[n]], *T = end->T[piece];
                 const double *moved = end->moved[over->then.node[n]];
                 for (int d = 0; d < 3; d++)
-                    u[d] += over->then.value[n] *
-                            (moved[d] - turn[3 * d] * T[0] - turn[3 * d + 1] * T[1] -
-                             turn[3 * d + 2] * T[2]);
+                    u[d] += over->then.value[n] * (moved[d] - turn[3 * d] * T[0] -
+                                                   turn[3 * d + 1] * T[1] - turn[3 * d + 2] * T[2]);
             }
             for (int n = 0; n < over->now.count; n++)
                 for (int d = 0; d < 3; d++)

@@ -451,8 +451,8 @@ double ref_motion_energy(const RefMotion *motion)
 }
 
 /* The local displacements of a piece that warp into where `from` is now, by its rotations, about an
- * anchor of this motion's: with Rt turned back, sum anchor Rt^-1 (moved - t) = 0 says what its drift
- * t is. */
+ * anchor of this motion's: with Rt turned back, sum anchor Rt^-1 (moved - t) = 0 says what its
+ * drift t is. */
 static void unwarp(const RefMotion *from, const RefMotion *motion, int piece, double *local)
 {
     double sum[9] = {0}, right[3] = {0}, t[3];

@@ -48,16 +48,16 @@ typedef struct {
     double *lambda; /* [modes] */
     double *row;    /* [nodes][6][modes]: the modes' displacement at a node, and half their curl */
     int pieces;
-    int *piece;     /* [nodes] */
-    bool *held;     /* [pieces] a constraint binds it */
-    double *anchor; /* [nodes] weights of sum 1 a piece: what is displaced by the drift */
-    double *drift;  /* [pieces][3][modes] */
+    int *piece;               /* [nodes] */
+    bool *held;               /* [pieces] a constraint binds it */
+    double *anchor;           /* [nodes] weights of sum 1 a piece: what is displaced by the drift */
+    double *drift;            /* [pieces][3][modes] */
     double *z, *speed, *load; /* [modes] amplitudes, velocities, modal force */
     double (*rotation)[3];    /* [nodes] w */
     double (*local)[3];       /* [nodes] Psi z */
     double (*moved)[3];       /* [nodes] displacement */
     double (*force)[3];       /* [nodes] N, the caller's to fill in; kept from step to step */
-    double (*sums)[3]; /* [4 pieces] of a pose */
+    double (*sums)[3];        /* [4 pieces] of a pose */
     int holds;
     RefHold *hold;
 } RefMotion;
