@@ -206,7 +206,8 @@ class Body(Made):
         gravity            (0, 0, 0)
         damping            0; of regions' motion relative to rigid, 0 to 1 (fastlsm eq. 14)
         damping_every      1; n: in every n-th step
-        cuttable           False; cut() and blades work. The octree's bodies always are; FastLSM's cost some memory more
+        cuttable           False; cut() and blades work. The octree's bodies always are; FastLSM's cost some memory more,
+                           and meshless ones' modes are found anew at every cut
         strain_limit       0: none; a link of FastLSM longer than this times its rest length breaks, above 1
         summation          "fast"; "bars", "naive": fastlsm section 3, prefix sums along bars only, and none
         polar              "fast"; "jacobi": how rotations are found

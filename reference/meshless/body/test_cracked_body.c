@@ -8,7 +8,9 @@
 
 static const double size[3] = {1, 1, 3};
 
-static const RefBodyOptions options = {.cell = 0.2, .basis = REF_MLS_LINEAR, .material = steel};
+static const RefBodyOptions options = {.cell = 0.2,
+                                       .basis = REF_MLS_LINEAR,
+                                       .material = {.young = 1e7, .poisson = 0.3, .density = 1000}};
 
 enum { SIDE = 20, SHOWN = 2 * SIDE * SIDE };
 
