@@ -23,8 +23,9 @@ foreach(noun scene/scene scene/scene_settings scene/body scene/memory scene/near
   list(APPEND view_sources bench/${noun}.c)
 endforeach()
 
-foreach(noun engine stored elastic_absent body/body body/cylinders body/matrices body/mls body/nodes body/octants body/pairs
-    motion/grip motion/motion motion/rotation motion/skin solve/dense_plain solve/least_squares solve/modes_absent)
+foreach(noun engine stored elastic_absent body/body body/cylinders body/matrices body/mls body/nodes body/octants
+    body/pairs motion/grip motion/motion motion/rotation motion/skin solve/dense_plain solve/least_squares
+    solve/modes_absent surface/cloud surface/mpu surface/points)
   list(APPEND view_sources reference/meshless/${noun}.c)
 endforeach()
 

@@ -330,7 +330,9 @@ const BenchSetting bench_scene_settings[] = {
      SAYS("Forces on particles")},
     {"cuts", LIST(scene.cut, scene.cut_count), .table = cut_table,
      SAYS("A blade, a segment, moves evenly and cuts what it crosses; a meshless body in seconds a "
-          "frame. One that stops before the first step leaves a crack that was there")},
+          "frame, and not through what a handle holds. With 'start' 0 and a 'stop' that is shorter "
+          "than a "
+          "step it leaves a crack that was there")},
     {"touches", LIST(scene.touch, scene.touch_count), .table = touch_table,
      SAYS("Octree: a finger on an instance, around which it is refined")},
     {"view", BENCH_IN(BenchScene, view), .table = view_table,

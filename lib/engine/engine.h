@@ -177,7 +177,8 @@ typedef struct {
 
     /* Breaks what holds the body together across the cut's triangles from number `first` on, which
      * are in the rest position of the voxels, before any instance's pose. Allocates. SM_USAGE: the
-     * body was not created to be cut. NULL of engines that cannot cut any. */
+     * body was not created to be cut; SM_INPUT, of elastic ones: what is left is none that moves,
+     * or a handle's particles would be parted. NULL of engines that cannot cut any. */
     SmCode (*cut)(SmEngine *engine, const SmCut *cut, long first, SmError *error);
 
     /* Breaks these links of one body, pairs of neighbours at rest in either order, broken or not,

@@ -1,5 +1,10 @@
-/* What elastic.h and motion/grip_modes.h are without the libraries that find modes. */
+/* What elastic.h, motion/grip_modes.h and cracks of solids are without the libraries that find
+ * modes: a body that cracks gets others. */
+#include <stdlib.h>
+
+#include "body/cracked_body.h"
 #include "elastic.h"
+#include "motion/cracked_motion.h"
 #include "motion/grip_modes.h"
 
 static SmCode absent(SmError *error)
@@ -28,4 +33,32 @@ SmCode ref_grip_modes(const RefBody *body, int grips, const RefGrip *grip, int c
     (void)body, (void)grips, (void)grip, (void)count;
     *modes = (RefModes){0};
     return absent(error);
+}
+
+/* No body has cracks here: what would make some is never called. */
+void ref_body_cracks_free(RefBodyCracks *cracks)
+{
+    (void)cracks;
+}
+
+SmCode ref_body_crack(const RefBody *body, const SmCut *cut, long first, const RefField *field,
+                      const RefMaterial *material, long count, const double (*shown)[3],
+                      RefBody *cracked, SmError *error)
+{
+    (void)body, (void)cut, (void)first, (void)field, (void)material, (void)count, (void)shown;
+    (void)cracked;
+    return absent(error);
+}
+
+void ref_cut_add(const SmCut *from, long first, SmCut *to)
+{
+    (void)from, (void)first, (void)to;
+    abort();
+}
+
+void ref_motion_take_cracked(const RefBody *body, const RefBody *before, double density,
+                             RefMotion *from, double h, RefMotion *motion)
+{
+    (void)body, (void)before, (void)density, (void)from, (void)h, (void)motion;
+    abort();
 }

@@ -39,6 +39,7 @@ struct SmEngine {
     int grips; /* of handles that hold any particles */
     RefGrip *grip;
     double (*grip_pose)[3][4]; /* [grips] */
+    int *grip_handle;          /* [grips] whose each is */
 };
 
 #define CONST(array)  ((const double(*)[3])(array))
@@ -48,9 +49,10 @@ static void release(SmEngine *engine)
 {
     for (int k = 0; k < engine->grips; k++) ref_grip_free(engine->grip + k);
     free(engine->grip);
-    free(engine->grip_pose);
+    sm_free_all(engine->grip_pose, engine->grip_handle);
     engine->grip = NULL;
     engine->grip_pose = NULL;
+    engine->grip_handle = NULL;
     engine->grips = 0;
 }
 
@@ -365,20 +367,27 @@ static long nodes_beside(const RefBody *body, long count, const double (*x)[3])
     return beside;
 }
 
-/* Where the particles of a handle rest that nodes cover, or if there are none all of them: a stored
- * body's covers reach the particles that it was made for. Returns how many. */
+/* A handle's particles that can be bound: of a body that has cracks those on the piece of the first
+ * one, of a stored one those that it has functions for, or if there are none, all of them. */
 static long covered_points(const SmEngine *engine, const SmHandle *handle, double (*x)[3])
 {
     const RefBody *body = &engine->elastic.body;
     RefShape shape = ref_shape_create(&body->nodes);
     long count = 0;
+    int piece = -1;
     for (long k = 0; k < handle->count; k++) {
         const double *rest = engine->rest[handle->particle[k]];
-        bool covered = !engine->stored || ref_mls_at(&body->nodes, body->basis, rest, &shape);
+        bool asks = engine->stored || body->cracks;
+        bool covered = !asks || ref_mls_at(&body->nodes, body->basis, rest, &shape);
+        if (covered && body->cracks) {
+            int own = ref_body_piece(body, shape.node[0]);
+            if (piece < 0) piece = own;
+            covered = own == piece;
+        }
         if (covered) memcpy(x[count++], rest, sizeof *x);
     }
     ref_shape_free(&shape);
-    if (count > 0) return count;
+    if (count > 0 || body->cracks) return count;
     for (; count < handle->count; count++)
         memcpy(x[count], engine->rest[handle->particle[count]], sizeof *x);
     return count;
@@ -392,6 +401,7 @@ static void choose_grips(SmEngine *engine)
     const RefBody *body = &engine->elastic.body;
     engine->grip = sm_alloc((size_t)engine->handles.count, sizeof *engine->grip);
     engine->grip_pose = sm_alloc((size_t)engine->handles.count, sizeof *engine->grip_pose);
+    engine->grip_handle = sm_alloc((size_t)engine->handles.count, sizeof *engine->grip_handle);
     long room = body->nodes.count / 3 / (engine->handles.count + 1) + 1;
     if (room > MOST_POINTS) room = MOST_POINTS;
     for (int n = 0; n < engine->handles.count; n++) {
@@ -400,8 +410,10 @@ static void choose_grips(SmEngine *engine)
         double(*x)[3] = sm_alloc((size_t)handle->count, sizeof *x);
         long count = covered_points(engine, handle, x);
         double wanted = fmax(0.55 * (double)nodes_beside(body, count, CONST(x)), 4);
-        engine->grip[engine->grips++] = ref_grip_choose(count, CONST(x), 0.5 * body->octants.cell,
-                                                        (int)fmin(wanted, (double)room));
+        engine->grip_handle[engine->grips] = n;
+        if (count > 0)
+            engine->grip[engine->grips++] = ref_grip_choose(
+                count, CONST(x), 0.5 * body->octants.cell, (int)fmin(wanted, (double)room));
         free(x);
     }
 }
@@ -482,6 +494,34 @@ static SmCode find_modes(const SmEngine *engine, const RefBody *body, RefModes *
                           error);
 }
 
+/* Whether all particles of a handle move with one piece of a body. */
+static bool on_one_piece(const SmEngine *engine, const RefBody *body, const SmHandle *handle)
+{
+    RefShape shape = ref_shape_create(&body->nodes);
+    int piece = -1;
+    bool one = true;
+    for (long k = 0; k < handle->count && one; k++) {
+        one = ref_mls_at(&body->nodes, body->basis, engine->rest[handle->particle[k]], &shape);
+        int own = one ? ref_body_piece(body, shape.node[0]) : -1;
+        one = one && (piece < 0 || own == piece);
+        piece = own;
+    }
+    ref_shape_free(&shape);
+    return one;
+}
+
+/* SM_INPUT: what a handle holds would be parted. */
+static SmCode check_handles(const SmEngine *engine, const RefBody *cracked, SmError *error)
+{
+    for (int n = 0; n < engine->handles.count; n++)
+        if (!on_one_piece(engine, cracked, engine->handles.handle + n))
+            return sm_fail(error, SM_INPUT,
+                           "the cut parts what handle %d holds, or leaves some of it no nodes: cut "
+                           "farther from it, or let go first",
+                           n + 1);
+    return SM_OK;
+}
+
 static SmCode meshless_cut(SmEngine *engine, const SmCut *cut, long first, SmError *error)
 {
     RefElastic *elastic = &engine->elastic;
@@ -494,7 +534,8 @@ static SmCode meshless_cut(SmEngine *engine, const SmCut *cut, long first, SmErr
     SmCode code = ref_body_crack(&before, cut, first, &elastic->field, &elastic->material,
                                  engine->all, CONST(engine->rest), &cracked, error);
     if (code != SM_OK) return code;
-    code = find_modes(engine, &cracked, &modes, error);
+    code = check_handles(engine, &cracked, error);
+    if (code == SM_OK) code = find_modes(engine, &cracked, &modes, error);
     if (code != SM_OK) {
         ref_body_free(&cracked);
         return code;
@@ -537,10 +578,9 @@ static void meshless_pieces(SmEngine *engine, SmPieces *pieces)
 static void meshless_bound(SmEngine *engine, const SmBoundary *boundary)
 {
     if (sm_handles_set(&engine->handles, boundary, engine->count)) bind(engine, NULL);
-    for (int n = 0, k = 0; n < engine->handles.count; n++)
-        if (engine->handles.handle[n].count > 0)
-            memcpy(engine->grip_pose[k++], engine->handles.handle[n].pose,
-                   sizeof engine->grip_pose[0]);
+    for (int k = 0; k < engine->grips; k++)
+        memcpy(engine->grip_pose[k], engine->handles.handle[engine->grip_handle[k]].pose,
+               sizeof engine->grip_pose[0]);
     const double shift[3] = {engine->pose[0][3], engine->pose[1][3], engine->pose[2][3]};
     ref_grip_aim(engine->grips, engine->grip, shift, (const double(*)[3][4])engine->grip_pose,
                  &engine->elastic.motion);

@@ -3,13 +3,15 @@
  * Its particles are the lattice's vertices, carried by the body as its surface would be (skin.h),
  * so that scenes, handles and surfaces are those of lattice engines; w, summation, polar and layout
  * mean nothing here. A goal is where a particle is, and a particle's region the particle alone.
- * create() refuses several instances, collisions and a strain limit; obstacles stop nothing, and
- * `unstopped` says so.
+ * create() refuses several instances, collisions and a finite strain limit; obstacles stop nothing,
+ * and `unstopped` says so.
  *
  * A body that was created to be cut (a strain limit of INFINITY) is: a cut is a crack
  * (body/crack_surface.h), and what it changes is made again: nodes, matrices and modes, in seconds
  * a cut of a body of 1,000 nodes. Particles beside it move with what is on their side. A stored
- * body is not cut, as its modes are those that it was stored with.
+ * body is not cut, as its modes are those that it was stored with; nor is what a handle holds
+ * parted, or left without nodes (SM_INPUT). A handle of later holds what is on the piece of its
+ * first particle.
  *
  * A handle grips the body at some of its particles (grip.h), a little more than one for every
  * second node there: these move with it to 1e-6, and those between them as the body does, by a few

@@ -452,6 +452,54 @@ static void cut_on_further(SmEngine *engine, SmCut *cut, double front)
     for (int k = 0; k < 2; k++) assert_true(after[k] <= before[k] * (1 + 1e-9));
 }
 
+/* A cut through what is held, along the beam, is refused and changes nothing; so is one so close to
+ * a particle that is held alone that it has no nodes left. After a cut, handles on both sides, or
+ * on a particle without nodes, do no harm. */
+TEST(handles_that_are_cut)
+{
+    needs_solver();
+    for (int alone = 0; alone < 2; alone++) {
+        Scene scene = beam_create(4, 150);
+        SmEngine *engine;
+        SmCut cut;
+        SmError error;
+        scene.params.strain_limit = INFINITY;
+        assert_int_equal(create(&scene, &engine, NULL), SM_OK);
+        sm_cut_init(&cut, 0.5);
+        double(*rest)[3] = field(engine, SM_REST);
+        long *particle = sm_alloc((size_t)particles_of(engine), sizeof *particle), held = 0;
+        for (long p = 0; p < particles_of(engine); p++)
+            if (rest[p][0] < 0.2 && (!alone || held == 0)) particle[held++] = p;
+        SmHandle handle = {.count = held, .particle = particle};
+        for (int d = 0; d < 3; d++) handle.pose[d][d] = 1;
+        SmBoundary boundary = {.handle_count = 1, .handle = &handle};
+        type->bound(engine, &boundary);
+        type->step(engine, NULL);
+        if (alone)
+            cut_across(&cut, 0, rest[particle[0]][0] + 0.01, -1, 2, 3);
+        else
+            cut_across(&cut, 2, 0.5, -1, 5, 6);
+        SmCode code = type->cut(engine, &cut, 0, &error);
+        assert_true(code == SM_OK || code == SM_INPUT);
+        if (!alone) assert_int_equal(code, SM_INPUT);
+        if (code) assert_non_null(strstr(error.text, "handle 1"));
+        boundary.handle_count = 0; /* and let go */
+        type->bound(engine, &boundary);
+        assert_int_equal(type->cut(engine, &cut, 0, &error), SM_OK);
+        boundary.handle_count = 1;
+        type->bound(engine, &boundary);
+        double(*x)[3] = field(engine, SM_POSITION);
+        for (int step = 0; step < 20; step++) type->step(engine, NULL);
+        type->get(engine, SM_POSITION, x);
+        for (long p = 0; p < particles_of(engine); p++)
+            for (int d = 0; d < 3; d++) assert_true(isfinite(x[p][d]));
+        sm_free_all(x, rest, particle);
+        sm_cut_free(&cut);
+        type->destroy(engine);
+        scene_free(&scene);
+    }
+}
+
 /* A beam held at both ends and cut through between them: each end stays with its piece, which sags
  * as a cantilever does. */
 TEST(a_held_beam_is_cut)

@@ -6,32 +6,6 @@
 
 #include "../../../lib/vector.h"
 
-bool ref_mls_sees(const RefNodes *nodes, long n, const double x[3])
-{
-    double part[6];
-    if (!nodes->cut.pass) return true;
-    return nodes->cut.pass(nodes->cut.cracks, x, nodes->position[n], nodes->reach[n], part) &&
-           part[0] >= 0.5;
-}
-
-long ref_mls_nearest(const RefNodes *nodes, const double x[3])
-{
-    long best = 0;
-    double least = INFINITY;
-    bool seen = false;
-    for (long n = 0; n < nodes->count; n++) {
-        double square = sm_square_between(nodes->position[n], x);
-        if (seen && square >= least) continue;
-        bool sees = ref_mls_sees(nodes, n, x);
-        if (sees == seen && square >= least) continue;
-        if (seen && !sees) continue;
-        seen = sees;
-        least = square;
-        best = n;
-    }
-    return best;
-}
-
 /* Makes the covers of the `wanted` nodes nearest to x, of those that it sees, hold it well. */
 static void enlarge(RefNodes *nodes, size_t wanted, const double x[3], double *distance,
                     size_t *nearest)

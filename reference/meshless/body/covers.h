@@ -10,10 +10,4 @@
  * the rule: its corners have one octant, and covers of three edges only touch them. */
 long ref_mls_cover(RefNodes *nodes, RefBasis basis, long count, const double (*x)[3]);
 
-/* Whether no crack takes most of what node n's weight is at x. */
-bool ref_mls_sees(const RefNodes *nodes, long n, const double x[3]);
-
-/* The node nearest to x, of those that it sees if there are such. O(nodes). */
-long ref_mls_nearest(const RefNodes *nodes, const double x[3]);
-
 #endif

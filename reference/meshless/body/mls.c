@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../../lib/vector.h"
+
 enum { MOST_TERMS = REF_MLS_QUADRATIC, MOST_PARTS = 6 };
 
 /* Copied into every caller down to shape_of(), where `dims` and `terms` are constants: the compiler
@@ -282,6 +284,32 @@ bool ref_mls_seen_from(const RefNodes *nodes, RefBasis basis, const double x[3],
     bool defined = shape_of(nodes, basis, x, eye, shape);
     if (!defined) shape->count = 0;
     return defined;
+}
+
+bool ref_mls_sees(const RefNodes *nodes, long n, const double x[3])
+{
+    double part[6];
+    if (!nodes->cut.pass) return true;
+    return nodes->cut.pass(nodes->cut.cracks, x, nodes->position[n], nodes->reach[n], part) &&
+           part[0] >= 0.5;
+}
+
+long ref_mls_nearest(const RefNodes *nodes, const double x[3])
+{
+    long best = 0;
+    double least = INFINITY;
+    bool seen = false;
+    for (long n = 0; n < nodes->count; n++) {
+        double square = sm_square_between(nodes->position[n], x);
+        if (seen && square >= least) continue;
+        bool sees = ref_mls_sees(nodes, n, x);
+        if (sees == seen && square >= least) continue;
+        if (seen && !sees) continue;
+        seen = sees;
+        least = square;
+        best = n;
+    }
+    return best;
 }
 
 void ref_rows_free(RefRows *rows)

@@ -43,6 +43,12 @@ bool ref_mls_at(const RefNodes *nodes, RefBasis basis, const double x[3], RefSha
 bool ref_mls_seen_from(const RefNodes *nodes, RefBasis basis, const double x[3],
                        const double eye[3], RefShape *shape);
 
+/* Whether no crack takes most of what node n's weight is at x. */
+bool ref_mls_sees(const RefNodes *nodes, long n, const double x[3]);
+
+/* The node nearest to x, of those that it sees if there are such. O(nodes). */
+long ref_mls_nearest(const RefNodes *nodes, const double x[3]);
+
 /* meshless eq. 13, the spline of the weights, by the signed s; the slopes are its first and second
  * derivative, which jumps at a half, less a billionth: that is its outer part's. */
 double ref_mls_spline(double s, double slope[2]);

@@ -70,8 +70,9 @@ static void share_anchors(HandOver *over)
             weight[number[origin]] += anchor;
             continue;
         }
-        look_at(over, nodes->position[n]);
-        for (int k = 0; k < over->then.count; k++)
+        bool then =
+            ref_mls_at(&over->before->nodes, over->before->basis, nodes->position[n], &over->then);
+        for (int k = 0; then && k < over->then.count; k++)
             weight[over->then.node[k]] += anchor * over->then.value[k];
     }
     free(number);
@@ -177,8 +178,9 @@ static void relax(const RefMotion *from, RefMotion *motion)
         *(elastic_energy(motion, middle) > most ? &low : &high) = middle;
     }
     for (int k = 0; k < motion->modes; k++) {
-        motion->z[k] /= 1 + high * motion->lambda[k];
-        motion->speed[k] /= 1 + high * motion->lambda[k];
+        double less = motion->lambda[k] > 0 ? 1 / (1 + high * motion->lambda[k]) : 1;
+        motion->z[k] *= less;
+        motion->speed[k] *= less;
     }
 }
 
