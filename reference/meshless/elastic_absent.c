@@ -50,12 +50,6 @@ SmCode ref_body_crack(const RefBody *body, const SmCut *cut, long first, const R
     return absent(error);
 }
 
-void ref_cut_add(const SmCut *from, long first, SmCut *to)
-{
-    (void)from, (void)first, (void)to;
-    abort();
-}
-
 void ref_motion_take_cracked(const RefBody *body, const RefBody *before, double density,
                              RefMotion *from, double h, RefMotion *motion)
 {
