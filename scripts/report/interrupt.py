@@ -24,7 +24,14 @@ def check():
         sys.exit(128 + caught[0])
 
 
+def said(dropped):
+    """Not the end itself, of which Python otherwise says that it was dropped."""
+    if not caught:
+        sys.__unraisablehook__(dropped)
+
+
 def watch():
+    sys.unraisablehook = said
     for number in NUMBERS:
         if signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, stop)

@@ -661,22 +661,25 @@ static SmCode map_mended(const char *name, RefSurfaceMap *map, SmError *error)
     return code;
 }
 
-/* With all its handles, or where they have no map, without those that can be cut. */
+/* With all its handles; where they have no map, or one that turns triangles over, without those
+ * that can be cut, if that is better. */
 static SmCode map_whole(const char *name, RefSurfaceMap *map, SmError *error)
 {
     RefTriangulation *surface = &map->surface->triangles;
     if (surface->genus < 2 || surface->rims > 0) return map_mended(name, map, error);
-    RefTriangulation other = ref_triangulation_copy(surface);
+    RefSurfaceMap other = *map;
+    other.surface = sm_alloc(1, sizeof *other.surface);
+    other.surface->triangles = ref_triangulation_copy(surface);
     SmCode code = map_mended(name, map, error);
-    int cut = code == SM_INPUT ? cut_handles(&other, largest_hole) : 0;
-    if (cut > 0) {
-        ref_triangulation_free(surface);
-        *surface = other;
-        map->handles += cut;
-        return map_mended(name, map, error);
-    }
-    ref_triangulation_free(&other);
-    return code;
+    bool poor = code == SM_INPUT || (code == SM_OK && map->flips > 0);
+    int cut = poor ? cut_handles(&other.surface->triangles, largest_hole) : 0;
+    other.handles += cut;
+    bool better = cut > 0 && map_mended(name, &other, code == SM_OK ? NULL : error) == SM_OK &&
+                  (code != SM_OK || other.flips < map->flips);
+    RefSurfaceMap worse = better ? *map : other;
+    if (better) *map = other;
+    ref_surface_map_free(&worse);
+    return better ? SM_OK : code;
 }
 
 /* Maps what a mesh has; `share` and `edges` say what is dropped and closed. */
