@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../../lib/mesh/edge.h"
 #include "../../../lib/pieces.h"
 #include "../../../lib/vector.h"
 #include "mls.h"
@@ -20,19 +21,6 @@ void ref_crack_surface_free(RefCrackSurface *cracks)
 
 /* ---- the front */
 
-typedef struct {
-    int low, high; /* vertices */
-    int triangle;
-} Edge;
-
-static int by_vertices(const void *a, const void *b)
-{
-    const Edge *p = a, *q = b;
-    if (p->low != q->low) return p->low < q->low ? -1 : 1;
-    if (p->high != q->high) return p->high < q->high ? -1 : 1;
-    return (p->triangle > q->triangle) - (p->triangle < q->triangle);
-}
-
 static bool has_area(const SmCut *cut, long triangle)
 {
     const double *normal = cut->plane[triangle];
@@ -40,15 +28,13 @@ static bool has_area(const SmCut *cut, long triangle)
 }
 
 /* All edges, in order; returns how many. */
-static long sort_edges(const SmCut *cut, Edge *edge)
+static long sort_edges(const SmCut *cut, SmEdge *edge)
 {
     long count = 0;
     for (long t = 0; t < cut->triangles; t++)
-        for (int k = 0; k < 3 && has_area(cut, t); k++) {
-            int a = cut->triangle[t][k], b = cut->triangle[t][(k + 1) % 3];
-            edge[count++] = (Edge){a < b ? a : b, a < b ? b : a, (int)t};
-        }
-    qsort(edge, (size_t)count, sizeof *edge, by_vertices);
+        for (int k = 0; k < 3 && has_area(cut, t); k++)
+            edge[count++] = sm_edge(cut->triangle[t], k, (int)(3 * t + k));
+    qsort(edge, (size_t)count, sizeof *edge, sm_compare_edges);
     return count;
 }
 
@@ -115,16 +101,15 @@ static void add_border(const RefField *field, double cell, const double end[2][3
 static void find_front(const RefField *field, double cell, RefCrackSurface *cracks)
 {
     const SmCut *cut = &cracks->cut;
-    Edge *edge = sm_alloc(3 * (size_t)cut->triangles, sizeof *edge);
+    SmEdge *edge = sm_alloc(3 * (size_t)cut->triangles, sizeof *edge);
     long count = sort_edges(cut, edge), room = 0;
     for (long e = 0, next; e < count; e = next) {
-        for (next = e + 1; next < count; next++)
-            if (edge[next].low != edge[e].low || edge[next].high != edge[e].high) break;
+        for (next = e + 1; next < count && sm_edges_same(edge + next, edge + e);) next++;
         if (next - e > 1) continue;
         double end[2][3];
         memcpy(end[0], cut->vertex[edge[e].low], sizeof end[0]);
         memcpy(end[1], cut->vertex[edge[e].high], sizeof end[1]);
-        add_border(field, cell, (const double(*)[3])end, cracks->sheet[edge[e].triangle], &room,
+        add_border(field, cell, (const double(*)[3])end, cracks->sheet[edge[e].corner / 3], &room,
                    cracks);
     }
     free(edge);

@@ -267,15 +267,23 @@ static int add_terms(const Trousers *t, const RefNodes *nodes, const double x[3]
     return dimmed;
 }
 
+/* Quadratic functions of 700 cells; the chart must not move. */
+static RefShape make_shapes(Trousers *t, RefChart *chart, RefQuadtree *tree, RefNodes *nodes)
+{
+    make(1.3, (double[3]){0, 0, 0}, t);
+    *chart = chart_of(t, true);
+    *tree = quadtree_of(chart, 1, 700);
+    ref_quadtree_nodes(tree, 6, nodes);
+    return ref_shape_create(nodes);
+}
+
 TEST(reproduction_across_joints_and_around_zeros)
 {
     Trousers t;
-    make(1.3, (double[3]){0, 0, 0}, &t);
-    RefChart chart = chart_of(&t, true);
-    RefQuadtree tree = quadtree_of(&chart, 1, 700);
+    RefChart chart;
+    RefQuadtree tree;
     RefNodes nodes;
-    ref_quadtree_nodes(&tree, 6, &nodes);
-    RefShape shape = ref_shape_create(&nodes);
+    RefShape shape = make_shapes(&t, &chart, &tree, &nodes);
     int dimmed = 0, defined = 0;
     for (int n = 0; n < 400; n++) {
         double x[3], sum[3][6] = {{0}};
@@ -299,12 +307,10 @@ TEST(reproduction_across_joints_and_around_zeros)
 TEST(functions_do_not_leap_behind_a_zero)
 {
     Trousers t;
-    make(1.3, (double[3]){0, 0, 0}, &t);
-    RefChart chart = chart_of(&t, true);
-    RefQuadtree tree = quadtree_of(&chart, 1, 700);
+    RefChart chart;
+    RefQuadtree tree;
     RefNodes nodes;
-    ref_quadtree_nodes(&tree, 6, &nodes);
-    RefShape shape = ref_shape_create(&nodes);
+    RefShape shape = make_shapes(&t, &chart, &tree, &nodes);
     double *value = sm_alloc((size_t)nodes.count, sizeof *value);
     for (int n = 0; n < 200; n++) { /* straight above the zero, in the cylinders on its right */
         double height = random_between(&seed, 0.02, 0.4), most = 0;
