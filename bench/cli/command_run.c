@@ -335,18 +335,30 @@ static bool state_finite(const BenchPlayback *play)
     return sum == 0;
 }
 
+static void count_change(bool changed, BenchOutcome *outcome)
+{
+    double seconds = bench_watch_stop(&outcome->change.watch);
+    if (!changed) return;
+    outcome->changes++;
+    bench_mean_add(&outcome->change, seconds, 1);
+}
+
 /* What the scene changes before a frame. */
 static SmCode change(BenchPlayback *play, BenchOutcome *outcome, SmError *error)
 {
     bench_watch_start(&outcome->change.watch);
     SmCode code = bench_playback_change(play, error);
-    double seconds = bench_watch_stop(&outcome->change.watch);
     bool changed = false;
     for (int p = 0; p < play->count; p++) changed |= play->group[p].last.resampled;
-    if (!changed) return code;
-    outcome->changes++;
-    bench_mean_add(&outcome->change, seconds, 1);
+    count_change(changed, outcome);
     return code;
+}
+
+/* What its steps have broken. */
+static void follow(BenchPlayback *play, BenchOutcome *outcome)
+{
+    bench_watch_start(&outcome->change.watch);
+    count_change(bench_playback_follow(play), outcome);
 }
 
 /* Runs all frames; stops early when no longer finite. `recording` may be NULL. */
@@ -365,6 +377,7 @@ static SmCode run_frames(BenchPlayback *play, BenchRecording *recording, const O
             code = run_step(play, recording, options->record, outcome, error);
         end_span(outcome);
         if (code) break;
+        follow(play, outcome);
         outcome->finite = state_finite(play);
         if (recording && outcome->finite) code = bench_recording_frame(recording, error);
         bench_progress_show(&progress, scene->name, (f + 1.0) / scene->frames);

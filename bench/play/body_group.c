@@ -104,16 +104,35 @@ void bench_group_sweep(BenchGroup *group, double from, double to, SmCut *cut)
     }
 }
 
+/* What has been split has vertices more, what lay in a gap triangles less; this may be so too where
+ * sm_cut_surface() has left some of it. */
+static bool differs(const BenchGroup *group, long vertices, long triangles)
+{
+    const SmMesh *surface = &group->skin.surface;
+    return surface->vertex_count != vertices || surface->triangle_count != triangles;
+}
+
+bool bench_group_follow(BenchGroup *group)
+{
+    long vertices = group->skin.surface.vertex_count,
+         triangles = group->skin.surface.triangle_count;
+    double start = sm_now();
+    if (!group->carrier->follow || !group->carrier->follow(group)) return false;
+    group->last.resampled = true;
+    group->last.split |= differs(group, vertices, triangles);
+    group->last.follow_seconds += sm_now() - start;
+    return true;
+}
+
 SmCode bench_group_frame(BenchGroup *group, double from, double to, SmError *error)
 {
     long vertices = group->skin.surface.vertex_count,
          triangles = group->skin.surface.triangle_count;
     group->last = (BenchChanged){0};
-    SmCode code = group->carrier->frame(group, from, to, error);
-    /* what has been split has vertices more, what lay in a gap triangles less; this may be so too
-     * where sm_cut_surface() has left some of it */
-    group->last.split = group->skin.surface.vertex_count != vertices ||
-                        group->skin.surface.triangle_count != triangles;
+    bench_group_follow(group);
+    SmCode code = SM_OK;
+    if (group->carrier->frame) code = group->carrier->frame(group, from, to, error);
+    group->last.split = differs(group, vertices, triangles);
     return code;
 }
 

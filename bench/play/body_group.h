@@ -9,7 +9,7 @@
 #include "../../octree/change/refinement.h"
 #include "runner.h"
 
-/* What the last frame has changed, and the seconds that it took. */
+/* What has changed since the last frame began, and the seconds that it took. */
 typedef struct {
     bool resampled; /* cells were split or merged, or material cut */
     bool split;     /* the surface has other vertices or triangles */
@@ -34,7 +34,11 @@ typedef struct {
 /* What carries a body's surface, and how it is changed: an octree's leaves, or a lattice's
  * particles (carrier.c). */
 typedef struct BenchCarrier {
-    /* All that is due between two times; fills group->last. */
+    /* The surface comes apart where the engine has broken the body since it last did; whether it
+     * has. NULL: engines break nothing by themselves. */
+    bool (*follow)(BenchGroup *group);
+
+    /* All that the scene does between two times; fills group->last. NULL: it does nothing. */
     SmCode (*frame)(BenchGroup *group, double from, double to, SmError *error);
 
     /* Of each vertex of one body, into [skin.surface.vertex_count]: the leaf's level, 0 of a base
@@ -58,8 +62,12 @@ void bench_group_free(BenchGroup *group);
 /* Can the scene change this group at all? */
 bool bench_group_changes(const BenchGroup *group);
 
-/* All that is due between two times, before the steps of that frame; fills `last`. */
+/* All that is due between two times, before the steps of that frame, what engines have broken
+ * included; fills `last`. */
 SmCode bench_group_frame(BenchGroup *group, double from, double to, SmError *error);
+
+/* What the engine has broken alone, after steps; adds to `last`. Whether there was anything. */
+bool bench_group_follow(BenchGroup *group);
 
 /* The surfaces of the group's instances, one after the other, now: [instances * vertices][3]. With
  * `back` s the velocities of what carries them are followed so far back (not of given points). */

@@ -10,40 +10,43 @@
 
 /* ---- a lattice, by particle number: blades, and links that have broken by strain */
 
+static bool follow_lattice(BenchGroup *group)
+{
+    long first = group->skin.cut.triangles;
+    bool torn = sm_skin_tear(&group->skin);
+    if (torn) sm_skin_follow_cut(&group->skin, first);
+    return torn;
+}
+
 static SmCode change_lattice(BenchGroup *group, double from, double to, SmError *error)
 {
     const BenchRunner *runner = &group->runner;
     SmCut *cut = &group->skin.cut;
-    double start = sm_now();
     long first = cut->triangles;
-    bool torn = sm_skin_tear(&group->skin);
-    long blades = cut->triangles;
-    if (bench_blades_move(runner->scene, from, to)) bench_group_sweep(group, from, to, cut);
-    if (!torn && cut->triangles == first) return SM_OK;
-    SmCode code = SM_OK;
-    if (cut->triangles > blades) code = runner->type->cut(runner->engine, cut, blades, error);
+    if (!bench_blades_move(runner->scene, from, to)) return SM_OK;
+    double start = sm_now();
+    bench_group_sweep(group, from, to, cut);
+    if (cut->triangles == first) return SM_OK;
+    SmCode code = runner->type->cut(runner->engine, cut, first, error);
     if (code) return code;
     double done = sm_now();
     sm_skin_follow_cut(&group->skin, first);
-    group->last = (BenchChanged){
-        .resampled = true, .resample_seconds = done - start, .follow_seconds = sm_now() - done};
+    group->last.resampled = true;
+    group->last.resample_seconds = done - start;
+    group->last.follow_seconds += sm_now() - done;
     return SM_OK;
 }
 
-const BenchCarrier bench_lattice_carrier = {change_lattice, NULL, NULL};
+const BenchCarrier bench_lattice_carrier = {.follow = follow_lattice, .frame = change_lattice};
 
 /* ---- an engine that draws its surface */
 
-static SmCode change_drawn(BenchGroup *group, double from, double to, SmError *error)
+static bool follow_drawn(BenchGroup *group)
 {
-    double start = sm_now();
-    (void)from, (void)to, (void)error;
-    if (sm_skin_draw(&group->skin))
-        group->last = (BenchChanged){.resampled = true, .follow_seconds = sm_now() - start};
-    return SM_OK;
+    return sm_skin_draw(&group->skin);
 }
 
-const BenchCarrier bench_drawn_carrier = {change_drawn, NULL, NULL};
+const BenchCarrier bench_drawn_carrier = {.follow = follow_drawn};
 
 /* ---- an octree, by leaf number: blades, touches and an eye */
 
@@ -177,4 +180,5 @@ static void find_levels(const BenchGroup *group, int *level)
     }
 }
 
-const BenchCarrier bench_octree_carrier = {change_octree, find_levels, oct_engine_may_change};
+const BenchCarrier bench_octree_carrier = {
+    .frame = change_octree, .levels = find_levels, .may_change = oct_engine_may_change};

@@ -90,6 +90,14 @@ SmCode bench_playback_change_now(BenchPlayback *play, SmError *error)
     return change_until(play, play->time, error);
 }
 
+bool bench_playback_follow(BenchPlayback *play)
+{
+    bool any = false;
+    for (int i = 0; i < play->count; i++)
+        if (bench_group_changes(&play->group[i])) any |= bench_group_follow(&play->group[i]);
+    return any;
+}
+
 void bench_playback_prepare(BenchPlayback *play)
 {
     for (int i = 0; i < play->count; i++) bench_runner_prepare(&play->group[i].runner);

@@ -32,6 +32,10 @@ SmCode bench_playback_change(BenchPlayback *play, SmError *error);
 /* The same of what is due at this moment alone, between two frames. */
 SmCode bench_playback_change_now(BenchPlayback *play, SmError *error);
 
+/* After the steps of a frame: surfaces come apart where engines have broken bodies in it, which
+ * change() does else before the next. Whether any has. */
+bool bench_playback_follow(BenchPlayback *play);
+
 /* One step of all bodies: first what moves handles and pushes, then the engines. */
 void bench_playback_prepare(BenchPlayback *play);
 void bench_playback_advance(BenchPlayback *play, SmLaps *laps);
@@ -50,7 +54,7 @@ void bench_playback_points(BenchPlayback *play, double (*point)[3]);
 enum { BENCH_HASH_TEXT = 17 };
 void bench_playback_hash(const BenchPlayback *play, char text[BENCH_HASH_TEXT]);
 
-/* Has the last change given a surface new vertices or triangles? */
+/* Has a surface got new vertices or triangles since the last change began? */
 bool bench_playback_split(const BenchPlayback *play);
 
 /* The group that is described and recorded: the only one, or the last that is touched. */
