@@ -98,7 +98,7 @@ static int hop(const RefCylinders *cylinders, int at, double theta[2], double wa
         joint = joint_at(cylinders, at, up, theta[0] + share * way[0]);
     }
     for (int d = 0; d < 2; d++) theta[d] += share * way[d];
-    if (joint) {
+    if (joint && joint->to >= 0) {
         const RefCylinder *next = cylinders->cylinder + joint->to;
         double on = theta[0] - joint->begin, width = width_of(cylinder);
         on -= width * floor(on / width);
@@ -219,7 +219,7 @@ static bool look_around(Look *look, const Sight *sight)
             near |= up > look->low[1] - by && up < look->high[1] + by && on > look->low[0] - by &&
                     on < look->high[0] + by;
         }
-        for (int k = -1; k <= 0; k++) look_across(look, sight, joint, k * width);
+        for (int k = -1; k <= 0 && joint->to >= 0; k++) look_across(look, sight, joint, k * width);
     }
     return near;
 }

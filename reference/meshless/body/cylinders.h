@@ -18,7 +18,7 @@ typedef struct {
 
 /* An interval of a side. Both its ends are zeros of the form. */
 typedef struct {
-    int from, to;      /* cylinders */
+    int from, to;      /* cylinders; `to` -1: a rim, on which both zeros are */
     bool up;           /* of the upper side of `from`, the lower one of `to`; or the other way */
     double begin, end; /* begin in low[0]..high[0]; an end beyond goes on at the left */
     double shift[2];   /* what is to be added to a place beyond to have it in `to`, or so many

@@ -176,29 +176,39 @@ double ref_harmonic_wedge(const RefTriangulation *surface, const double *a, cons
     return sum;
 }
 
-/* A tree of edges from a vertex: [vertices] the corner whose edge leads to each, -1 for the root;
- * and the order in which they were reached. */
-static int *edge_tree(const RefTriangulation *surface, int root, int *order)
+/* Adds a vertex to the tree, and with it, where rims are followed, all of its rim. */
+static long reach(const RefTriangulation *surface, int vertex, int by, bool rims, int *from,
+                  int *order, long end)
 {
+    int at = surface->corner[vertex];
+    from[vertex] = by;
+    order[end++] = vertex;
+    if (!rims || surface->rim[at] < 0) return end;
+    for (int next = surface->vertex[ref_corner_next(at)]; next != vertex;
+         next = surface->vertex[ref_corner_next(at)]) {
+        from[next] = at;
+        order[end++] = next;
+        at = surface->corner[next];
+    }
+    return end;
+}
+
+/* A tree of edges from a vertex: [vertices] the corner whose edge leads to each, -1 for the root;
+ * and the order in which they were reached. With `rims` all edges but one of each rim are in it. */
+static int *edge_tree(const RefTriangulation *surface, int root, bool rims, int *order)
+{
+    enum { UNSEEN = -2 };
     int *from = sm_alloc((size_t)surface->vertices, sizeof *from);
-    bool *seen = sm_alloc((size_t)surface->vertices, sizeof *seen);
-    long end = 1;
-    order[0] = root;
-    seen[root] = true;
-    from[root] = -1;
+    for (long v = 0; v < surface->vertices; v++) from[v] = UNSEEN;
+    long end = reach(surface, root, -1, rims, from, order, 0);
     for (long n = 0; n < end; n++) {
         int first = surface->corner[order[n]], at = first;
         do {
             int other = surface->vertex[ref_corner_next(at)];
-            if (!seen[other]) {
-                seen[other] = true;
-                from[other] = at;
-                order[end++] = other;
-            }
+            if (from[other] == UNSEEN) end = reach(surface, other, at, rims, from, order, end);
             at = ref_corner_left(surface, at);
         } while (at >= 0 && at != first);
     }
-    free(seen);
     return from;
 }
 
@@ -238,13 +248,17 @@ void ref_harmonic_loops(const RefTriangulation *surface, double **form)
     size_t corners = 3 * (size_t)surface->triangles;
     bool *barred = sm_alloc(corners, sizeof *barred);
     int *order = sm_alloc((size_t)surface->vertices, sizeof *order), found = 0;
-    int *from = edge_tree(surface, 0, order);
-    for (long v = 0; v < surface->vertices; v++)
-        if (from[v] >= 0) barred[from[v]] = barred[surface->twin[from[v]]] = true;
+    int *from = edge_tree(surface, 0, true, order);
+    for (long v = 0; v < surface->vertices; v++) {
+        if (from[v] < 0) continue;
+        barred[from[v]] = true;
+        if (surface->twin[from[v]] >= 0) barred[surface->twin[from[v]]] = true;
+    }
     int *back = triangle_tree(surface, 0, barred);
     for (int c = 0; c < (int)corners; c++) {
         int twin = surface->twin[c];
-        if (twin > c || barred[c] || back[c / 3] == c || back[twin / 3] == twin) continue;
+        if (twin < 0 || twin > c || barred[c] || back[c / 3] == c || back[twin / 3] == twin)
+            continue;
         double *loop = form[found++] = sm_alloc(corners, sizeof *loop);
         loop[c] += 1;
         loop[twin] -= 1;
@@ -272,7 +286,7 @@ double *ref_harmonic_crossing(const RefTriangulation *surface, int from, int to)
 double *ref_harmonic_integral(const RefTriangulation *surface, int root, const double *form)
 {
     int *order = sm_alloc((size_t)surface->vertices, sizeof *order);
-    int *from = edge_tree(surface, root, order);
+    int *from = edge_tree(surface, root, false, order);
     double *sum = sm_alloc((size_t)surface->vertices, sizeof *sum);
     for (long n = 1; n < surface->vertices; n++) {
         int v = order[n];

@@ -34,10 +34,10 @@ double ref_harmonic_product(const RefTriangulation *surface, const double *weigh
 /* The integral of a wedge b, the forms taken as linear in triangles. */
 double ref_harmonic_wedge(const RefTriangulation *surface, const double *a, const double *b);
 
-/* Closed forms of whole numbers, one for each of the 2 genus independent loops of a closed surface:
- * 1 for edges that a loop of triangles crosses one way. The loops are those of a tree of edges and
- * a tree of triangles that crosses none of them (Eppstein 2003). `form` has room for 2 genus; the
- * caller frees each. O(triangles). */
+/* Closed forms of whole numbers, one for each of 2 genus independent loops that are no rims: 1 for
+ * edges that a loop of triangles crosses one way. The loops are those of a tree of edges, in which
+ * all of a rim but one is, and a tree of triangles that crosses none of them (Eppstein 2003).
+ * `form` has room for 2 genus; the caller frees each. O(triangles). */
 void ref_harmonic_loops(const RefTriangulation *surface, double **form);
 
 /* A closed form of whole numbers: 1 for edges that a row of triangles from one rim to another

@@ -14,23 +14,30 @@ void ref_holomorphic_free(RefHolomorphic *basis)
         free(basis->form[k]);
     }
     if (basis->dual != basis->form) free(basis->dual);
-    sm_free_all(basis->form, basis->star);
+    sm_free_all(basis->form, basis->energy, basis->star);
     *basis = (RefHolomorphic){.count = 0};
 }
 
-/* Takes whole multiples of other forms from each, until none gets less energy by that. */
-static void shorten(const RefTriangulation *surface, const RefHolomorphic *basis, double *energy)
+/* Adds so many times another form. */
+static void add(const RefTriangulation *surface, double times, const double *other, double *form)
 {
+    for (long c = 0; c < 3 * surface->triangles; c++) form[c] += times * other[c];
+}
+
+/* Takes whole multiples of others from each of the loops' forms, until none gets less energy by
+ * that. */
+static void shorten(const RefTriangulation *surface, const RefHolomorphic *basis)
+{
+    double *energy = basis->energy;
     int count = basis->count;
     bool changed = true;
     for (int round = 0; round < 100 && changed; round++) {
         changed = false;
-        for (int i = 0; i < count; i++)
-            for (int j = 0; j < count; j++) {
+        for (int i = 0; i < basis->loops; i++)
+            for (int j = 0; j < basis->loops; j++) {
                 double times = rint(energy[i * count + j] / energy[j * count + j]);
                 if (i == j || times == 0 || !isfinite(times)) continue;
-                for (long c = 0; c < 3 * surface->triangles; c++)
-                    basis->form[i][c] -= times * basis->form[j][c];
+                add(surface, -times, basis->form[j], basis->form[i]);
                 for (int k = 0; k < count; k++)
                     energy[i * count + k] -= times * energy[j * count + k];
                 for (int k = 0; k < count; k++)
@@ -41,7 +48,7 @@ static void shorten(const RefTriangulation *surface, const RefHolomorphic *basis
 }
 
 /* The star of each form: wedge star = energy, wedge and energy the products of the forms. */
-static bool find_star(const RefTriangulation *surface, const double *energy, RefHolomorphic *basis)
+static bool find_star(const RefTriangulation *surface, RefHolomorphic *basis)
 {
     int count = basis->count;
     size_t size = (size_t)count * (size_t)count;
@@ -54,7 +61,7 @@ static bool find_star(const RefTriangulation *surface, const double *energy, Ref
             wedge[i * count + j] = ref_harmonic_wedge(surface, basis->form[i], basis->dual[j]);
     for (int j = 0; j < count && found; j++) {
         memcpy(left, wedge, size * sizeof *left);
-        for (int i = 0; i < count; i++) right[i] = energy[i * count + j];
+        for (int i = 0; i < count; i++) right[i] = basis->energy[i * count + j];
         found = ref_dense_any(count, left, right);
         for (int i = 0; i < count; i++) basis->star[i * count + j] = right[i];
     }
@@ -74,66 +81,97 @@ static int longest_rim(const RefTriangulation *surface)
     return longest;
 }
 
-/* Forms of a surface with rims, and those of their stars. */
-static SmCode between_rims(const RefTriangulation *surface, const double *weight,
-                           RefHolomorphic *basis, SmError *error)
+/* Forms of loops and between rims, and those of their stars. */
+static SmCode make_forms(const RefTriangulation *surface, const double *weight,
+                         RefHolomorphic *basis, SmError *error)
 {
     size_t corners = 3 * (size_t)surface->triangles;
-    bool *held = sm_alloc((size_t)surface->vertices, sizeof *held);
-    basis->dual = sm_alloc((size_t)basis->count, sizeof *basis->dual);
-    int longest = longest_rim(surface);
-    for (int k = 0; k < basis->count; k++) {
-        int rim = k < longest ? k : k + 1;
+    int longest = surface->rims ? longest_rim(surface) : 0;
+    bool *held = NULL;
+    ref_harmonic_loops(surface, basis->form);
+    if (surface->rims) {
+        basis->dual = sm_alloc((size_t)basis->count, sizeof *basis->dual);
+        held = sm_alloc((size_t)surface->vertices, sizeof *held);
+        for (long v = 0; v < surface->vertices; v++)
+            held[v] = surface->rim[surface->corner[v]] >= 0;
+    }
+    for (int k = 0; k < basis->loops && surface->rims; k++) {
+        basis->dual[k] = sm_alloc(corners, sizeof **basis->dual);
+        memcpy(basis->dual[k], basis->form[k], corners * sizeof **basis->dual);
+    }
+    for (int k = basis->loops; k < basis->count; k++) {
+        int rim = k - basis->loops + (k - basis->loops >= longest);
         basis->form[k] = sm_alloc(corners, sizeof **basis->form);
         basis->dual[k] = ref_harmonic_crossing(surface, longest, rim);
         for (int c = 0; c < (int)corners; c++) {
             int from = surface->corner[surface->vertex[c]];
             int to = surface->corner[surface->vertex[ref_corner_next(c)]];
             basis->form[k][c] = (surface->rim[to] == rim) - (surface->rim[from] == rim);
-            held[surface->vertex[c]] = surface->rim[from] >= 0;
         }
     }
     SmCode code = ref_harmonic_solve(surface, weight, held, basis->count, basis->form, error);
-    if (code == SM_OK)
+    if (code == SM_OK && surface->rims)
         code = ref_harmonic_solve(surface, weight, NULL, basis->count, basis->dual, error);
     free(held);
     return code;
 }
 
+/* Takes from the loops' forms what lies between rims, so that nothing flows through a rim. */
+static bool part_loops(const RefTriangulation *surface, const double *weight,
+                       const RefHolomorphic *basis)
+{
+    int loops = basis->loops, rims = basis->count - loops;
+    double *A = sm_alloc((size_t)(rims * rims), sizeof *A);
+    double *b = sm_alloc((size_t)rims, sizeof *b);
+    double *const *form = basis->form;
+    bool parted = true;
+    for (int k = 0; k < loops && parted; k++) {
+        for (int i = 0; i < rims; i++) {
+            b[i] = ref_harmonic_product(surface, weight, form[loops + i], form[k]);
+            for (int j = 0; j < rims; j++)
+                A[i * rims + j] =
+                    ref_harmonic_product(surface, weight, form[loops + i], form[loops + j]);
+        }
+        parted = ref_dense_definite(rims, A, b);
+        for (int i = 0; i < rims && parted; i++) add(surface, -b[i], form[loops + i], form[k]);
+    }
+    sm_free_all(A, b);
+    return parted;
+}
+
+/* Makes loops' forms short, and finds all forms' stars; false where they depend on one another. */
+static bool finish(const RefTriangulation *surface, const double *weight, RefHolomorphic *basis)
+{
+    int count = basis->count;
+    if (count > basis->loops && !part_loops(surface, weight, basis)) return false;
+    double *energy = basis->energy = sm_alloc((size_t)count * (size_t)count, sizeof *energy);
+    for (int i = 0; i < count; i++)
+        for (int j = 0; j < count; j++)
+            energy[i * count + j] =
+                ref_harmonic_product(surface, weight, basis->form[i], basis->form[j]);
+    shorten(surface, basis);
+    return find_star(surface, basis);
+}
+
 SmCode ref_holomorphic_create(const RefTriangulation *surface, const double *weight,
                               const char *name, RefHolomorphic *basis, SmError *error)
 {
-    int count = surface->rims ? surface->rims - 1 : 2 * surface->genus;
-    SmCode code;
-    *basis = (RefHolomorphic){.count = count, .form = sm_alloc((size_t)count, sizeof(double *))};
-    if (surface->rims) {
-        code = between_rims(surface, weight, basis, error);
-    } else {
-        basis->dual = basis->form;
-        ref_harmonic_loops(surface, basis->form);
-        code = ref_harmonic_solve(surface, weight, NULL, count, basis->form, error);
-    }
-    if (code == SM_OK) {
-        double *energy = sm_alloc((size_t)count * (size_t)count, sizeof *energy);
-        for (int i = 0; i < count; i++)
-            for (int j = 0; j < count; j++)
-                energy[i * count + j] =
-                    ref_harmonic_product(surface, weight, basis->form[i], basis->form[j]);
-        if (surface->rims == 0) shorten(surface, basis, energy);
-        if (!find_star(surface, energy, basis))
-            code =
-                sm_fail(error, SM_INPUT,
-                        "%s: the forms of its handles or rims depend on one another: give it more "
-                        "triangles",
-                        name);
-        free(energy);
-    }
+    int loops = 2 * surface->genus, count = loops + (surface->rims ? surface->rims - 1 : 0);
+    *basis = (RefHolomorphic){
+        .count = count, .loops = loops, .form = sm_alloc((size_t)count, sizeof(double *))};
+    basis->dual = basis->form;
+    SmCode code = make_forms(surface, weight, basis, error);
+    if (code == SM_OK && !finish(surface, weight, basis))
+        code = sm_fail(error, SM_INPUT,
+                       "%s: the forms of its handles or rims depend on one another: give it more "
+                       "triangles",
+                       name);
     if (code != SM_OK) ref_holomorphic_free(basis);
     return code;
 }
 
 void ref_holomorphic_form(const RefTriangulation *surface, const RefHolomorphic *basis,
-                          const int *number, double *const step[2])
+                          const double *number, double *const step[2])
 {
     long corners = 3 * surface->triangles;
     for (int d = 0; d < 2; d++) memset(step[d], 0, (size_t)corners * sizeof *step[d]);
@@ -152,8 +190,10 @@ void ref_holomorphic_form(const RefTriangulation *surface, const RefHolomorphic 
  * little energy have few and wide cylinders. */
 static const double ENERGY = 0.1;
 
-/* From which numbers between rims start: functions differ by a share of this. */
-enum { LEVEL = 16 };
+/* Steps of numbers between rims, halved so often: shares of the whole difference, or of a period.
+ */
+static const double LEVEL = 0.125;
+enum { HALVED = 3 };
 
 /* Of forms that are looked for: every so many triangles, with two steps of each basis form. */
 enum { BEAM = 80, MOST_LOOKED_AT = 4000 };
@@ -161,15 +201,13 @@ typedef struct {
     const RefHolomorphic *basis;
     long triangles, stride;
     double *area, (*step)[2], (*dual)[2]; /* [triangles], [count][triangles] */
-    bool open;                            /* has rims */
-    long edges;                           /* that leave rims */
-    double *leave;        /* [count][edges] steps along them, turned about on the longest rim */
-    int choices, *number; /* [BEAM][count] the best, best first */
+    int choices;
+    double *number; /* [BEAM][count] the best, best first */
     double score[BEAM];
 } Choice;
 
 /* The variance of log L, and a share of the energy. */
-static double judge(const Choice *choice, const int *number)
+static double judge(const Choice *choice, const double *number)
 {
     int count = choice->basis->count;
     double sum = 0, square = 0, whole = 0, energy = 0;
@@ -196,67 +234,47 @@ static double judge(const Choice *choice, const int *number)
     free(star);
     energy *= (double)choice->stride;
     return square / whole - sum / whole * (sum / whole) +
-           (choice->open ? 0 : energy / count * ENERGY);
+           (choice->basis->loops ? energy / count * ENERGY : 0);
 }
 
-/* Whether whole numbers are not all 0, have no common divisor, and the first of them is positive:
- * turned about, a form has the same leaves. */
-static bool is_one(int count, const int *number)
+/* Turned about or scaled, a form has the same leaves: whole numbers have no common divisor, and the
+ * first of them is positive; without them the greatest difference between rims is 1. False where
+ * all are 0, or have a divisor. */
+static bool normalise(const RefHolomorphic *basis, double *number)
 {
     int common = 0, first = 0;
-    for (int k = 0; k < count; k++) {
-        int a = abs(number[k]);
-        if (first == 0) first = number[k];
+    double low = 0, high = 0, factor = 1;
+    for (int k = 0; k < basis->count; k++) {
+        int a = k < basis->loops ? abs((int)number[k]) : 0;
+        if (first == 0 && number[k] != 0) first = number[k] > 0 ? 1 : -1;
         while (a != 0) {
             int rest = common % a;
             common = a;
             a = rest;
         }
+        low = fmin(low, number[k]);
+        high = fmax(high, number[k]);
     }
-    return common == 1 && first > 0;
-}
-
-/* Whether the function falls everywhere away from rims, and rises from the longest one, so that
- * none of its zeros is on a rim. */
-static bool falls(const Choice *choice, const int *number)
-{
-    for (long e = 0; e < choice->edges; e++) {
-        double step = 0;
-        for (int k = 0; k < choice->basis->count; k++)
-            step += number[k] * choice->leave[k * choice->edges + e];
-        if (!(step < 0)) return false;
-    }
+    if (basis->loops ? common != 1 : high == low) return false;
+    factor = first / (basis->loops ? 1 : high - low);
+    for (int k = 0; k < basis->count; k++) number[k] *= factor;
     return true;
 }
 
-/* The edges that leave rims. */
-static void find_edges(const RefTriangulation *surface, Choice *choice)
+static bool same(int count, const double *a, const double *b)
 {
-    size_t count = (size_t)choice->basis->count;
-    int longest = longest_rim(surface);
-    for (int pass = 0; pass < 2; pass++) {
-        if (pass) choice->leave = sm_alloc(count * (size_t)choice->edges, sizeof(double));
-        long edge = 0;
-        for (int c = 0; c < 3 * surface->triangles; c++) {
-            int rim = surface->rim[surface->corner[surface->vertex[c]]];
-            int to = surface->rim[surface->corner[surface->vertex[ref_corner_next(c)]]];
-            if (rim < 0 || to >= 0) continue;
-            for (size_t k = 0; pass && k < count; k++)
-                choice->leave[k * (size_t)choice->edges + (size_t)edge] =
-                    (rim == longest ? -1 : 1) * choice->basis->form[k][c];
-            edge++;
-        }
-        choice->edges = edge;
-    }
+    for (int k = 0; k < count; k++)
+        if (fabs(a[k] - b[k]) > 1e-9) return false;
+    return true;
 }
 
 /* Puts a choice where it belongs among the best; whether it is one and new. */
-static bool consider(Choice *choice, const int *number)
+static bool consider(Choice *choice, double *number)
 {
     size_t count = (size_t)choice->basis->count, bytes = count * sizeof *number;
-    if (choice->open ? !falls(choice, number) : !is_one((int)count, number)) return false;
+    if (!normalise(choice->basis, number)) return false;
     for (int n = 0; n < choice->choices; n++)
-        if (!memcmp(choice->number + (size_t)n * count, number, bytes)) return false;
+        if (same((int)count, choice->number + (size_t)n * count, number)) return false;
     double score = judge(choice, number);
     int at = choice->choices;
     if (at == BEAM && !(score < choice->score[BEAM - 1])) return false;
@@ -274,39 +292,58 @@ static bool consider(Choice *choice, const int *number)
     return true;
 }
 
-/* Considers what differs from the best by one in one number, as long as that makes them better. */
+/* Considers what flows from one rim to another and through no third one, for all two. */
+static void consider_flows(Choice *choice)
+{
+    const RefHolomorphic *basis = choice->basis;
+    int count = basis->count;
+    size_t size = (size_t)count * (size_t)count;
+    double *A = sm_alloc(size, sizeof *A), *c = sm_alloc((size_t)count, sizeof *c);
+    for (int i = 0; i < count; i++)
+        for (int j = i; j < count; j++) {
+            memcpy(A, basis->energy, size * sizeof *A);
+            for (int k = 0; k < count; k++) c[k] = (k == i) - (k == j && j != i);
+            if (ref_dense_definite(count, A, c)) consider(choice, c);
+        }
+    for (int k = 0; k < count; k++) c[k] = 1;
+    consider(choice, c);
+    sm_free_all(A, c);
+}
+
+/* Considers what differs from the best in one number, whole ones by one, as long as that makes them
+ * better. */
 static void search(Choice *choice)
 {
-    int count = choice->basis->count;
+    int count = choice->basis->count, loops = choice->basis->loops, halved = 0;
     size_t size = (size_t)BEAM * (size_t)count;
-    int *from = sm_alloc(size, sizeof *from), *next = sm_alloc((size_t)count, sizeof *next);
-    bool better = true;
-    for (int k = 0; k < count; k++) next[k] = LEVEL;
-    if (choice->open) consider(choice, next);
-    for (int round = 0; round < 2 * count && better; round++) {
+    double *from = sm_alloc(size, sizeof *from), *next = sm_alloc((size_t)count, sizeof *next);
+    double level = LEVEL;
+    if (loops == 0) consider_flows(choice);
+    for (int round = 0; round < 2 * count && halved <= HALVED; round++) {
         int known = choice->choices ? choice->choices : 1; /* zeros first */
+        bool better = false;
         memcpy(from, choice->number, size * sizeof *from);
-        better = false;
         for (int n = 0; n < known; n++)
             for (int k = 0; k < 2 * count; k++) {
                 memcpy(next, from + n * count, (size_t)count * sizeof *next);
-                next[k / 2] += k % 2 ? -1 : 1;
+                next[k / 2] += (k % 2 ? -1 : 1) * (k / 2 < loops ? 1 : level);
                 better |= consider(choice, next);
             }
+        if (better) continue;
+        halved += count > loops ? 1 : HALVED + 1;
+        level /= 2;
     }
     sm_free_all(from, next);
 }
 
 int ref_holomorphic_choose(const RefTriangulation *surface, const RefHolomorphic *basis, int wanted,
-                           int *number, double *score)
+                           double *number, double *score)
 {
     long stride = 1 + surface->triangles / MOST_LOOKED_AT;
     Choice choice = {
         .basis = basis, .stride = stride, .triangles = (surface->triangles + stride - 1) / stride};
     size_t count = (size_t)basis->count, triangles = (size_t)choice.triangles;
     choice.area = sm_alloc(triangles, sizeof *choice.area);
-    choice.open = surface->rims > 0;
-    if (choice.open) find_edges(surface, &choice);
     choice.step = sm_alloc(count * triangles, sizeof *choice.step);
     choice.dual = sm_alloc(count * triangles, sizeof *choice.dual);
     choice.number = sm_alloc(BEAM * count, sizeof *choice.number);
@@ -324,6 +361,6 @@ int ref_holomorphic_choose(const RefTriangulation *surface, const RefHolomorphic
     int found = choice.choices < wanted ? choice.choices : wanted;
     memcpy(number, choice.number, (size_t)found * count * sizeof *number);
     memcpy(score, choice.score, (size_t)found * sizeof *score);
-    sm_free_all(choice.area, choice.step, choice.dual, choice.leave, choice.number);
+    sm_free_all(choice.area, choice.step, choice.dual, choice.number);
     return found;
 }

@@ -19,8 +19,10 @@ typedef struct {
 } Piece;
 
 /* A critical leaf from a zero to the right. Above it the region's lower side goes on along the arc
- * `above`, below it the region's upper side along the arc `below`. */
+ * `above`, below it the region's upper side along the arc `below`; on a rim there is but one. */
+typedef enum { INSIDE, RIM_BELOW, RIM_ABOVE } ArcKind; /* where a rim is beside it */
 typedef struct {
+    ArcKind kind;
     int begin, end; /* corners of the zeros, in whose angles the arc leaves and arrives */
     int above, below;
     double length;
@@ -87,9 +89,44 @@ static void cross_edge(const Trace *trace, int corner, double at[2])
     for (int d = 0; d < 2; d++) at[d] += there[ref_corner_next(twin) % 3][d] - here[corner % 3][d];
 }
 
-/* Follows an arc from where it begins to the next zero; false where it meets none. */
+/* The edge of a rim that comes before a corner's, or after it. */
+static int along_rim(const RefTriangulation *surface, int corner, bool back)
+{
+    if (!back) return ref_rim_next(surface, corner);
+    int last = corner;
+    while (ref_corner_left(surface, last) >= 0) last = ref_corner_left(surface, last);
+    return ref_corner_last(last);
+}
+
+/* The same along a rim. What is below the surface runs to the right, what is above it back. */
+static bool follow_rim(Trace *trace, int which)
+{
+    Arc *arc = trace->arc + which;
+    const RefTriangulation *surface = trace->surface;
+    bool back = arc->kind == RIM_ABOVE;
+    int edge = back ? ref_corner_last(arc->begin) : arc->begin;
+    double along = 0, place[3][2];
+    for (long n = 0; n < 3 * surface->triangles; n++) {
+        int next = ref_corner_next(edge), left = back ? next : edge, right = back ? edge : next;
+        corners_of(trace, edge / 3, place);
+        double to = place[right % 3][0];
+        add_piece(trace, edge / 3, which, place[left % 3], to, along);
+        along += to - place[left % 3][0];
+        if (!(to > place[left % 3][0])) return false;
+        if (trace->is_zero[surface->vertex[right]]) {
+            arc->length = along;
+            arc->end = right;
+            return true;
+        }
+        edge = along_rim(surface, edge, back);
+    }
+    return false;
+}
+
+/* Follows an arc from where it begins to the next zero; false where it meets none, or a rim. */
 static bool follow(Trace *trace, int which)
 {
+    if (trace->arc[which].kind != INSIDE) return follow_rim(trace, which);
     Arc *arc = trace->arc + which;
     const RefTriangulation *surface = trace->surface;
     int corner = ref_corner_next(arc->begin); /* whose edge it leaves by */
@@ -103,8 +140,10 @@ static bool follow(Trace *trace, int which)
         add_piece(trace, corner / 3, which, at, out, along);
         along += out - at[0];
         at[0] = out;
+        int twin = surface->twin[corner];
+        if (twin < 0) return false;
+        int tip = ref_corner_last(twin);
         cross_edge(trace, corner, at);
-        int twin = surface->twin[corner], tip = ref_corner_last(twin);
         corners_of(trace, twin / 3, place);
         const double *end = place[tip % 3];
         if (trace->is_zero[surface->vertex[tip]] && fabs(end[1] - at[1]) < trace->near) {
@@ -128,26 +167,36 @@ static int arc_beside(const Trace *trace, int corner, bool left)
         for (int n = 0; n < trace->arcs; n++)
             if (trace->arc[n].begin == at) return n;
         at = left ? ref_corner_left(surface, at) : ref_corner_right(surface, at);
-    } while (at != corner);
+    } while (at >= 0 && at != corner);
     return -1;
+}
+
+static bool add_arc(Trace *trace, int begin, ArcKind kind, int room)
+{
+    if (trace->arcs == room) return false;
+    trace->arc[trace->arcs++] = (Arc){.kind = kind, .begin = begin, .over = -1, .under = -1};
+    return true;
 }
 
 /* The critical leaves. */
 static bool find_arcs(Trace *trace, int zeros, const int *zero)
 {
     const RefTriangulation *surface = trace->surface;
+    int room = 2 * zeros;
     trace->arcs = 0;
     for (int z = 0; z < zeros; z++) {
-        int first = surface->corner[zero[z]], at = first;
+        int first = surface->corner[zero[z]], at = first, last;
         do {
-            if (leads_right(trace, at)) {
-                if (trace->arcs == 2 * zeros) return false;
-                trace->arc[trace->arcs++] = (Arc){.begin = at, .over = -1, .under = -1};
-            }
+            ArcKind kind = surface->twin[at] < 0 ? RIM_BELOW : INSIDE;
+            if (leads_right(trace, at) && !add_arc(trace, at, kind, room)) return false;
+            last = at;
             at = ref_corner_left(surface, at);
-        } while (at != first);
+        } while (at >= 0 && at != first);
+        int before = ref_corner_last(last); /* the edge of a rim that arrives */
+        if (at < 0 && trace->step[0][before] < 0 && !add_arc(trace, last, RIM_ABOVE, room))
+            return false;
     }
-    if (trace->arcs != 2 * zeros) return false;
+    if (trace->arcs == 0) return false;
     for (int n = 0; n < trace->arcs; n++)
         if (!follow(trace, n)) return false;
     for (int n = 0; n < trace->arcs; n++) {
@@ -225,6 +274,7 @@ static double go_around(Trace *trace, int arc, bool upper, double begin, int whi
     double width = 0;
     for (int n = arc; n >= 0;) {
         Arc *one = trace->arc + n;
+        if (one->kind == (upper ? RIM_BELOW : RIM_ABOVE)) return 0;
         int *cylinder = upper ? &one->under : &one->over;
         if (*cylinder >= 0) return width;
         *cylinder = which;
@@ -247,22 +297,33 @@ static bool find_cylinder(Trace *trace, int arc, bool below, int which, RefCylin
     *cylinder = (RefCylinder){.high = {width, height}};
     if (!(width > 0 && height > 0) || end == -2) return false;
     if (end == -1) return true;
-    if (below || trace->arc[end].under >= 0) return false;
+    if (below || trace->arc[end].kind == RIM_BELOW || trace->arc[end].under >= 0) return false;
     double other = go_around(trace, end, true, trace->arc[arc].length / 2 - along, which);
     return fabs(other - width) < 1e3 * trace->near;
 }
 
-/* Both sides of every arc, after the rectangles have moved to where they stay. */
+/* Both sides of every arc, or the one that is not a rim, after the rectangles have moved to where
+ * they stay. */
 static void join_cylinders(const Trace *trace, RefCylinders *cylinders)
 {
     cylinders->joint = sm_alloc(2 * (size_t)trace->arcs, sizeof *cylinders->joint);
     for (int n = 0; n < trace->arcs; n++) {
         const Arc *arc = trace->arc + n;
-        double begin[2]; /* above, below */
+        double begin[2] = {0}; /* above, below */
         for (int k = 0; k < 2; k++) {
+            if (arc->kind == (k ? RIM_BELOW : RIM_ABOVE)) continue;
             const RefCylinder *in = cylinders->cylinder + (k ? arc->under : arc->over);
             double width = in->high[0] - in->low[0], place = arc->place[k];
             begin[k] = in->low[0] + place - width * floor(place / width);
+        }
+        if (arc->kind != INSIDE) {
+            bool up = arc->kind == RIM_ABOVE;
+            cylinders->joint[cylinders->joints++] = (RefJoint){.from = up ? arc->under : arc->over,
+                                                               .to = -1,
+                                                               .up = up,
+                                                               .begin = begin[up],
+                                                               .end = begin[up] + arc->length};
+            continue;
         }
         double up = cylinders->cylinder[arc->over].low[1] - cylinders->cylinder[arc->under].high[1];
         cylinders->joint[cylinders->joints++] = (RefJoint){.from = arc->under,
@@ -286,6 +347,7 @@ static bool find_cylinders(Trace *trace, RefCylinders *cylinders)
     for (int n = 0; n < 2 * trace->arcs; n++) { /* those above arcs come first */
         int arc = n % trace->arcs;
         bool below = n >= trace->arcs;
+        if (trace->arc[arc].kind == (below ? RIM_BELOW : RIM_ABOVE)) continue;
         if ((below ? trace->arc[arc].under : trace->arc[arc].over) >= 0) continue;
         RefCylinder *cylinder = cylinders->cylinder + cylinders->count;
         if (!find_cylinder(trace, arc, below, cylinders->count++, cylinder)) return false;
@@ -334,16 +396,18 @@ static bool same(const Trace *trace, const RefCylinders *cylinders, const double
     return fmin(off, fabs(off - (in->high[0] - in->low[0]))) < near && fabs(a[1] - b[1]) < near;
 }
 
-/* From the middle of the first arc to all triangles' middles; and whether all ways lead there. */
+/* From the middle of the first arc inside to all triangles' middles; and whether all ways lead
+ * there. */
 static bool place_middles(const Trace *trace, RefLeaves *leaves)
 {
     const RefTriangulation *surface = trace->surface;
     const RefCylinders *cylinders = &leaves->cylinders;
-    const Arc *arc = trace->arc;
+    const Arc *arc = trace->arc; /* between zeros there is one inside */
+    while (arc->kind != INSIDE) arc++;
     int *queue = sm_alloc((size_t)surface->triangles, sizeof *queue), root = 0;
     bool *seen = sm_alloc((size_t)surface->triangles, sizeof *seen), whole = true;
     double at[2], middle[2], way[2];
-    if (start_at(trace, 0, &root, at)) {
+    if (start_at(trace, (int)(arc - trace->arc), &root, at)) {
         const RefCylinder *in = cylinders->cylinder + arc->over;
         middle_in(trace, root, middle);
         for (int d = 0; d < 2; d++) {

@@ -15,9 +15,9 @@ typedef struct {
 
 /* Of a form whose zeros are vertices and that turns no triangle over (zeros.h): in the plane the
  * triangulation has no angles but at these vertices, so that leaves are straight lines. The form's
- * second part has whole-numbered periods, but for a common factor, and does not change along rims.
- * False, and nothing to free, where leaves do not close in double precision. The caller frees.
- * O(triangles). */
+ * second part has whole-numbered periods, but for a common factor, and does not change along rims,
+ * on which zeros may be. False, and nothing to free, where leaves do not close in double precision.
+ * The caller frees. O(triangles). */
 bool ref_leaves_trace(const RefTriangulation *surface, double *const step[2], int zeros,
                       const int *zero, RefLeaves *leaves);
 void ref_leaves_free(RefLeaves *leaves);

@@ -42,15 +42,16 @@ static void scale(const Attempt *attempt)
 }
 
 /* False, and nothing to free, where it fails. */
-static bool try(const RefTriangulation *surface, const RefHolomorphic *basis, const int *number,
+static bool try(const RefTriangulation *surface, const RefHolomorphic *basis, const double *number,
                 Attempt *attempt)
 {
-    int zeros = ref_zeros_count(surface), *zero = sm_alloc((size_t)zeros, sizeof *zero);
+    int *zero = sm_alloc(2 * (size_t)ref_zeros_count(surface), sizeof *zero);
     *attempt = (Attempt){.surface = ref_triangulation_copy(surface)};
     for (int d = 0; d < 2; d++)
         attempt->step[d] = sm_alloc(3 * (size_t)surface->triangles, sizeof *attempt->step[d]);
     ref_holomorphic_form(surface, basis, number, attempt->step);
-    bool made = ref_zeros_place(&attempt->surface, attempt->step, zero);
+    int zeros = ref_zeros_place(&attempt->surface, attempt->step, zero);
+    bool made = zeros > 0;
     if (made) {
         scale(attempt);
         made = ref_leaves_trace(&attempt->surface, attempt->step, zeros, zero, &attempt->leaves);
@@ -90,7 +91,7 @@ static double cells_of(const RefCylinders *cylinders)
 static bool try_all(const RefTriangulation *surface, const RefHolomorphic *basis, Attempt *best)
 {
     double least = INFINITY, score[TRIED];
-    int *number = sm_alloc((size_t)(TRIED * basis->count), sizeof *number);
+    double *number = sm_alloc((size_t)(TRIED * basis->count), sizeof *number);
     int count = ref_holomorphic_choose(surface, basis, TRIED, number, score);
     for (int n = 0; n < count; n++) {
         Attempt attempt;
@@ -149,13 +150,10 @@ SmCode ref_multitorus_unfold(RefTriangulation *surface, const char *name, double
     if (code != SM_OK) return code;
     if (!found)
         return sm_fail(error, SM_INPUT,
-                       surface->rims
-                           ? "%s: a sheet with %d holes, all of whose maps turn triangles "
-                             "over or have cylinders that are too thin: close some holes"
-                           : "%s: a closed surface of genus %d, all of whose maps turn "
-                             "triangles over or have cylinders that are too thin: give "
-                             "it more triangles, or cut handles",
-                       name, surface->rims ? surface->rims - 1 : surface->genus);
+                       "%s: a surface of genus %d with %d rims, all of whose maps turn triangles "
+                       "over or have cylinders that are too thin: give it more triangles, close "
+                       "some holes, or cut handles",
+                       name, surface->genus, surface->rims);
     ref_triangulation_free(surface);
     *surface = best.surface;
     *leaves = best.leaves;

@@ -1,6 +1,6 @@
-/* multitorus.h - the plane of a closed surface of genus 2 and more, or of a sheet with two holes
- * and more, whose double that is: of its holomorphic one-forms with closed leaves, among which rims
- * are, the one that suits a shell best, and the cylinders of that (leaves.h). */
+/* multitorus.h - the plane of a closed surface of genus 2 and more, or of one with rims, whose
+ * double that is: of its holomorphic one-forms with closed leaves, among which rims are or parts of
+ * them, the one that suits a shell best, and the cylinders of that (leaves.h). */
 #ifndef REF_MULTITORUS_H
 #define REF_MULTITORUS_H
 

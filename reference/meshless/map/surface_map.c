@@ -42,8 +42,8 @@ typedef struct {
 
 const char *ref_map_kind_name(RefMapKind kind)
 {
-    static const char *const name[] = {"disk",   "cap",        "annulus",    "torus",
-                                       "sphere", "multitorus", "holed sheet"};
+    static const char *const name[] = {"disk",   "cap",        "annulus",      "torus",
+                                       "sphere", "multitorus", "holed surface"};
     return name[kind];
 }
 
@@ -537,17 +537,12 @@ static SmCode unfold(const RefTriangulation *surface, const double *weight, Plan
     return code;
 }
 
-static bool has_map(const RefTriangulation *surface, RefMapKind *kind)
+static RefMapKind kind_of(const RefTriangulation *surface)
 {
     static const RefMapKind closed[] = {REF_MAP_SPHERE, REF_MAP_TORUS, REF_MAP_MULTITORUS};
-    static const RefMapKind open[] = {REF_MAP_DISK, REF_MAP_ANNULUS};
-    if (surface->rims == 0)
-        *kind = closed[surface->genus < 2 ? surface->genus : 2];
-    else if (surface->genus == 0)
-        *kind = surface->rims < 3 ? open[surface->rims - 1] : REF_MAP_HOLED;
-    else
-        return false;
-    return true;
+    static const RefMapKind open[] = {REF_MAP_HOLED, REF_MAP_DISK, REF_MAP_ANNULUS};
+    if (surface->rims == 0) return closed[surface->genus < 2 ? surface->genus : 2];
+    return open[surface->genus == 0 && surface->rims < 3 ? surface->rims : 0];
 }
 
 static void plane_free(Plane *plane)
@@ -616,14 +611,8 @@ static bool turns_over(const Plane *plane, long triangles)
 static SmCode map_any(const char *name, RefSurfaceMap *map, SmError *error)
 {
     const RefTriangulation *surface = &map->surface->triangles;
-    RefMapKind kind;
+    RefMapKind kind = kind_of(surface);
     Plane plane;
-    if (!has_map(surface, &kind))
-        return sm_fail(error, SM_INPUT,
-                       "%s: a surface of genus %d with %d rim%s: a shell is a closed surface, or "
-                       "has rims and no "
-                       "handle; close or cut what is more",
-                       name, surface->genus, surface->rims, surface->rims == 1 ? "" : "s");
     SmCode code = find_plane(name, 0, kind, map->surface, &plane, error);
     if (code == SM_OK && !plane.middle && turns_over(&plane, surface->triangles)) {
         plane_free(&plane);

@@ -10,7 +10,8 @@
  *     - a sphere is folded above and below;
  *     - a multitorus, a closed surface of genus 2 and more, is as many cylinders as 3 genus - 3, in
  *       a row in the plane, that are joined along intervals (multitorus.h, body/cylinders.h);
- *     - a holed sheet, of n rims, 3 and more, is 2 n - 3 cylinders, one of which ends at each rim.
+ *     - a holed surface, of three rims and more, or of a handle and a rim, is cylinders, too, at
+ *       which a rim is a side, or intervals of two sides.
  * Taken twice and glued along a cut, what has a fold is an annulus or a torus, of which it is the
  * half that half a turn leaves. Harmonic one-forms are found on these (harmonic.h): their energies
  * say the rectangle's shape, and their integrals are the parameters. Edges of the triangulation are
@@ -59,9 +60,8 @@ typedef struct {
  * passed sm_mesh_prepare(), and is no longer needed afterwards; `name` is for messages. Up to three
  * factorisations of [vertices], for a cap or a sphere one of them and one of [2 * vertices]; as
  * many again where a triangle is turned over at first. The caller frees. Errors: triangulation.h's
- * and solver.h's; SM_INPUT, a surface with handles and rims, one of several cylinders of whose maps
- * each turns a triangle over, and one whose parts stick out so far that over 1% of the triangles
- * collapse in double precision. */
+ * and solver.h's; SM_INPUT, one of several cylinders of whose maps each turns a triangle over, and
+ * one whose parts stick out so far that over 1% of the triangles collapse in double precision. */
 SmCode ref_surface_map_create(const SmMesh *mesh, const char *name, RefSurfaceMap *map,
                               SmError *error);
 
@@ -93,7 +93,7 @@ typedef struct {
 
 RefMapTriangle ref_surface_map_triangle(const RefSurfaceMap *map, long triangle);
 
-/* disk, cap, annulus, torus, sphere, multitorus or holed sheet. */
+/* disk, cap, annulus, torus, sphere, multitorus or holed surface. */
 const char *ref_map_kind_name(RefMapKind kind);
 
 #endif

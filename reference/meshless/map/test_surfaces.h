@@ -170,6 +170,37 @@ static inline SmMesh plate_mesh(const Holes *holes, int cells, double bend, unsi
     return mesh;
 }
 
+/* Round holes anywhere in the plate, a quarter from one another and from its rim. */
+static inline Holes random_holes(int holes, unsigned *seed)
+{
+    Holes all = {0};
+    while (all.holes < holes) {
+        double *hole = all.hole[all.holes], apart = INFINITY;
+        hole[2] = random_between(seed, 0.2, 0.35);
+        for (int d = 0; d < 2; d++)
+            hole[d] = random_between(seed, hole[2] + 0.25, (d ? 2 : 4) - hole[2] - 0.25);
+        for (int n = 0; n < all.holes; n++)
+            apart = fmin(apart, hypot(hole[0] - all.hole[n][0], hole[1] - all.hole[n][1]) -
+                                    hole[2] - all.hole[n][2]);
+        all.holes += apart > 0.25;
+    }
+    return all;
+}
+
+/* Takes the triangles away of which two corners are in a ball. */
+static inline void punch(const double middle[3], double radius, SmMesh *mesh)
+{
+    long kept = 0;
+    for (long t = 0; t < mesh->triangle_count; t++) {
+        int inside = 0;
+        for (int i = 0; i < 3; i++)
+            inside +=
+                sm_square_between(mesh->position[mesh->triangle[t][i]], middle) < radius * radius;
+        if (inside < 2) memcpy(mesh->triangle[kept++], mesh->triangle[t], sizeof *mesh->triangle);
+    }
+    mesh->triangle_count = kept;
+}
+
 static const Holes two_holes = {2, {{1.1, 1, 0.45}, {2.9, 0.9, 0.5}}};
 static const Holes three_holes = {3, {{0.8, 1.1, 0.35}, {2, 0.9, 0.35}, {3.2, 1, 0.4}}};
 

@@ -574,7 +574,7 @@ static void halve_edge(RefTriangulation *surface, int ab)
     join(surface, ba, mb);
 }
 
-/* Room for triangles and one vertex inside. */
+/* Room for triangles and one vertex, with no rim on them. */
 static void widen_inside(RefTriangulation *surface, long triangles)
 {
     size_t corners = 3 * (size_t)(surface->triangles + triangles);
@@ -583,11 +583,20 @@ static void widen_inside(RefTriangulation *surface, long triangles)
     for (size_t c = 3 * (size_t)surface->triangles; c < corners; c++) surface->rim[c] = -1;
 }
 
+/* What rim an edge is on that is now another corner's. */
+static void move_rim(RefTriangulation *surface, int from, int to)
+{
+    surface->rim[to] = surface->rim[from];
+    surface->rim[from] = -1;
+}
+
 int ref_triangulation_halve(RefTriangulation *surface, int corner)
 {
-    int first = (int)(3 * surface->triangles);
+    int first = (int)(3 * surface->triangles), twin = surface->twin[corner];
     widen_inside(surface, 2);
     halve_edge(surface, corner);
+    move_rim(surface, ref_corner_next(corner), first + 1);
+    move_rim(surface, ref_corner_next(twin), first + 4);
     return first;
 }
 
@@ -618,6 +627,7 @@ int ref_triangulation_insert(RefTriangulation *surface, int triangle, const doub
         surface->length[one + 1] = away[(2 + k) % 3];
         surface->length[one + 2] = away[1 + k];
         join(surface, one, surface->twin[from]);
+        move_rim(surface, from, one);
         if (surface->corner[surface->vertex[one]] == from)
             surface->corner[surface->vertex[one]] = one;
     }

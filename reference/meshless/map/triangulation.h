@@ -81,13 +81,13 @@ void ref_triangulation_delaunay(RefTriangulation *surface);
  * straight rim; returns how many. */
 long ref_triangulation_split(RefTriangulation *surface);
 
-/* Puts a vertex in the middle of an edge a-b of triangles a b c and b a d that are not on a rim,
- * c's corner behind b's: they become a m c and b m d, with the corners that they had, and two
- * triangles are added, m b c and m a d. Returns the first new corner. */
+/* Puts a vertex in the middle of an edge a-b inside, of triangles a b c and b a d, c's corner
+ * behind b's: they become a m c and b m d, with the corners that they had, and two triangles are
+ * added, m b c and m a d. Returns the first new corner. */
 int ref_triangulation_halve(RefTriangulation *surface, int corner);
 
-/* Puts a vertex into a triangle a b c that is not on a rim, where its corners have these weights,
- * whose sum is 1: it becomes a b m, and b c m and c a m are added. Returns the first new corner. */
+/* Puts a vertex into a triangle a b c where its corners have these weights, whose sum is 1: it
+ * becomes a b m, and b c m and c a m are added. Returns the first new corner. */
 int ref_triangulation_insert(RefTriangulation *surface, int triangle, const double weight[3]);
 
 /* The surface taken twice, cut open along lines of edges and each sheet glued to the

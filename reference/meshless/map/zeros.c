@@ -11,11 +11,18 @@ static const double CLOSE = 0.7;
 /* Angles of a zero are at most so wide. */
 static const double NARROW = 55 * M_PI / 180;
 
-/* The triangles around a vertex, in its own plane and that of the form, as seen from there. */
+/* The triangles around a vertex, in its own plane and that of the form, as seen from there; of one
+ * on a rim, which is straight in both, from that to that. */
 typedef struct {
-    int count, corner[MOST_AROUND];                /* the vertex's corners, to the left */
-    double complex z[MOST_AROUND], w[MOST_AROUND]; /* of the vertices at the other ends */
+    bool open;                                             /* on a rim: a vertex more */
+    int count, corner[MOST_AROUND];                        /* the vertex's corners, to the left */
+    double complex z[MOST_AROUND + 1], w[MOST_AROUND + 1]; /* of the vertices at the other ends */
 } Star;
+
+static int points_of(const Star *star)
+{
+    return star->count + star->open;
+}
 
 /* The surface, with its form, and near a zero w = model[0] + model[1] z + model[2] z^2. */
 typedef struct {
@@ -35,38 +42,49 @@ static void set_step(const Place *place, int corner, double complex step)
     place->step[1][corner] = cimag(step);
 }
 
-/* Angles are shared out over one turn. */
+/* Angles are shared out over one turn, or half a turn on a rim. */
 static bool look_around(const Place *place, int vertex, Star *star)
 {
     const RefTriangulation *surface = place->surface;
     double angle[MOST_AROUND], whole = 0, cotangent[3], turn = 0;
-    int first = surface->corner[vertex], at = first;
+    int first = surface->corner[vertex], at = first, last;
     star->count = 0;
     do {
-        if (at < 0 || star->count == MOST_AROUND) return false;
+        if (star->count == MOST_AROUND) return false;
         ref_triangle_shape(surface->length + at / 3 * 3, cotangent);
         angle[star->count] = atan2(1, cotangent[at % 3]);
         whole += angle[star->count];
-        star->corner[star->count++] = at;
+        star->corner[star->count++] = last = at;
         at = ref_corner_left(surface, at);
-    } while (at != first);
+    } while (at >= 0 && at != first);
+    star->open = at < 0;
     for (int k = 0; k < star->count; k++) {
         star->z[k] = surface->length[star->corner[k]] * cexp(I * turn);
         star->w[k] = step_of(place, star->corner[k]);
-        turn += angle[k] * 2 * M_PI / whole;
+        turn += angle[k] * (star->open ? M_PI : 2 * M_PI) / whole;
+    }
+    if (star->open) {
+        star->z[star->count] = -surface->length[ref_corner_last(last)];
+        star->w[star->count] = -step_of(place, ref_corner_last(last));
     }
     return true;
 }
 
-/* The quadratic function that has the least squares around a vertex, and its zero's place. */
+/* The quadratic function that has the least squares around a vertex, and its zero's place; on a rim
+ * it is real and has its zero at the vertex. */
 static bool fit(const Star *star, Place *place)
 {
     double complex A[3][4] = {{1}}, unit = cabs(star->z[0]);
-    for (int n = 0; n < star->count; n++) {
+    for (int n = 0; n < points_of(star); n++) {
         double complex z = star->z[n] / unit, row[4] = {1, z, z * z, star->w[n]};
+        if (star->open) row[1] = 0;
         for (int i = 0; i < 3; i++)
-            for (int j = 0; j < 4; j++) A[i][j] += conj(row[i]) * row[j];
+            for (int j = 0; j < 4; j++) {
+                double complex product = conj(row[i]) * row[j];
+                A[i][j] += star->open ? creal(product) : product;
+            }
     }
+    if (star->open) A[1][1] = 1;
     for (int i = 0; i < 3; i++) { /* positive definite: no pivots */
         if (!(cabs(A[i][i]) > 1e-9)) return false;
         for (int k = 0; k < 3; k++) {
@@ -93,7 +111,7 @@ static double cross(double complex a, double complex b)
 static int holds(const Star *star, double complex zero, double weight[3])
 {
     for (int k = 0; k < star->count; k++) {
-        double complex a = star->z[k], b = star->z[(k + 1) % star->count];
+        double complex a = star->z[k], b = star->z[(k + 1) % points_of(star)];
         double area = cross(a, b);
         weight[1] = cross(zero, b) / area;
         weight[2] = cross(a, zero) / area;
@@ -103,18 +121,13 @@ static int holds(const Star *star, double complex zero, double weight[3])
     return -1;
 }
 
-static bool on_rim(const RefTriangulation *surface, int triangle)
-{
-    const int *twin = surface->twin + 3 * (long)triangle;
-    return twin[0] < 0 || twin[1] < 0 || twin[2] < 0;
-}
-
 /* Halves the edge across from one of the corners at the zero; the new vertex stands where the model
  * says, moved by what the edge's ends are off on average. */
 static void halve_across(const Place *place, Star *star, int k)
 {
     RefTriangulation *surface = place->surface;
-    int next = (k + 1) % star->count, last = star->count++;
+    int next = (k + 1) % points_of(star), last = points_of(star);
+    star->count++;
     int ab = ref_corner_next(star->corner[k]), bc = ref_corner_next(ab), ca = ref_corner_last(ab);
     int ba = surface->twin[ab], ad = ref_corner_next(ba), db = ref_corner_last(ba);
     double complex z = (star->z[k] + star->z[next]) / 2, w = model_at(place, z);
@@ -138,7 +151,7 @@ static void halve_across(const Place *place, Star *star, int k)
     set_step(place, added + 4, a_d);
     set_step(place, added + 5, am - a_d);
     for (int n = last; n > k + 1; n--) { /* after k */
-        star->corner[n] = star->corner[n - 1];
+        if (n < star->count) star->corner[n] = star->corner[n - 1];
         star->z[n] = star->z[n - 1];
         star->w[n] = star->w[n - 1];
     }
@@ -151,7 +164,7 @@ static void halve_across(const Place *place, Star *star, int k)
 static int insert(const Place *place, Star *star, int k, const double weight[3])
 {
     RefTriangulation *surface = place->surface;
-    int v = star->corner[k], triangle = v / 3, next = (k + 1) % star->count;
+    int v = star->corner[k], triangle = v / 3, next = (k + 1) % points_of(star);
     double complex w[3] = {0, star->w[k], star->w[next]};
     double complex z[3] = {0, star->z[k], star->z[next]}, edge[3], away[3];
     double turned[3];
@@ -184,14 +197,12 @@ static int insert(const Place *place, Star *star, int k, const double weight[3])
 static bool narrow(const Place *place, Star *star)
 {
     for (int k = 0; k < star->count; k++) {
-        int next = (k + 1) % star->count;
+        int next = (k + 1) % points_of(star);
         double complex a = star->z[k] - place->zero, b = star->z[next] - place->zero;
         double angle = atan2(cross(a, b), creal(conj(a) * b));
         if (angle >= 0 && angle <= NARROW) continue;
         int across = ref_corner_next(star->corner[k]);
-        if (star->count == MOST_AROUND || on_rim(place->surface, across / 3) ||
-            on_rim(place->surface, place->surface->twin[across] / 3))
-            return false;
+        if (star->count == MOST_AROUND || place->surface->twin[across] < 0) return false;
         halve_across(place, star, k);
         k--;
     }
@@ -200,11 +211,12 @@ static bool narrow(const Place *place, Star *star)
 
 /* How far a place is within the triangles around a vertex, by the nearest of their outer edges,
  * which is `worst`. */
-static double depth(int count, const double complex *w, double complex at, int *worst)
+static double depth(const Star *star, double complex at, int *worst)
 {
     double least = INFINITY;
-    for (int k = 0; k < count; k++) {
-        double complex a = w[k] - at, way = w[(k + 1) % count] - w[k];
+    for (int k = 0; k < star->count; k++) {
+        double complex a = star->w[k] - at;
+        double complex way = star->w[(k + 1) % points_of(star)] - star->w[k];
         double far = cross(a, way) / cabs(way);
         if (far >= least) continue;
         least = far;
@@ -214,25 +226,26 @@ static double depth(int count, const double complex *w, double complex at, int *
 }
 
 /* Moves a vertex in the plane away from the nearest of the edges around it, as long as that is too
- * near; false where it has nowhere to be. */
+ * near, one on a rim along that; false where it has nowhere to be. */
 static bool settle(const Place *place, int vertex)
 {
     Star star;
     if (!look_around(place, vertex, &star)) return false;
     double size = INFINITY, most = -INFINITY;
     double complex at = 0, best = 0;
-    for (int k = 0; k < star.count; k++) size = fmin(size, cabs(star.w[k]));
+    for (int k = 0; k < points_of(&star); k++) size = fmin(size, cabs(star.w[k]));
     double pace = 0.3 * size;
     for (int n = 0; n < 400; n++, pace *= 0.98) {
         int worst = 0;
-        double found = depth(star.count, star.w, at, &worst);
+        double found = depth(&star, at, &worst);
         if (found > most) {
             most = found;
             best = at;
         }
         if (most > 0.1 * size) break;
-        double complex way = star.w[(worst + 1) % star.count] - star.w[worst];
-        at += pace * I * way / cabs(way);
+        double complex way = star.w[(worst + 1) % points_of(&star)] - star.w[worst];
+        double complex by = pace * I * way / cabs(way);
+        at += star.open ? creal(by) : by;
     }
     for (int k = 0; k < star.count; k++) {
         int out = star.corner[k], in = ref_corner_last(out);
@@ -259,26 +272,37 @@ static bool place_zero(Place *place, int vertex, int *zero)
         vertex = place->surface->vertex[ref_corner_next(star.corner[nearest])];
         held = -1;
     }
-    if (held < 0) return false;
+    if (held < 0 || (star.open && weight[0] >= CLOSE)) return false;
     if (weight[0] >= CLOSE)
         place->zero = 0;
-    else if (on_rim(place->surface, star.corner[held] / 3))
-        return false;
     else
         vertex = insert(place, &star, held, weight);
     *zero = vertex;
     return narrow(place, &star) && settle(place, vertex);
 }
 
-/* How often the second form changes its sign around a vertex. */
+/* The same of a zero on a rim, which is the vertex itself: the rim stays where it is. */
+static bool place_on_rim(Place *place, int vertex)
+{
+    Star star;
+    if (!look_around(place, vertex, &star) || !fit(&star, place)) return false;
+    if (!narrow(place, &star)) return false;
+    settle(place, vertex);
+    return true;
+}
+
+/* How often the second form changes its sign around a vertex: twice where it has no zero, and on a
+ * rim, along which it does not change, not at all. */
 static int changes(const RefTriangulation *surface, const double *step, int vertex)
 {
     int first = surface->corner[vertex], at = first, count = 0;
-    do {
+    bool open = surface->twin[first] < 0;
+    if (open) at = ref_corner_left(surface, at);
+    while (at >= 0) {
         int left = ref_corner_left(surface, at);
-        count += (step[at] >= 0) != (step[left] >= 0);
-        at = left;
-    } while (at != first);
+        if (left >= 0) count += (step[at] >= 0) != (step[left] >= 0);
+        at = left == first ? -1 : left;
+    }
     return count;
 }
 
@@ -306,20 +330,32 @@ static bool settle_all(const Place *place)
     return !any;
 }
 
-bool ref_zeros_place(RefTriangulation *surface, double *step[2], int *zero)
+/* The vertices near zeros; none where those are double or not as many as there should be. */
+static int find_saddles(const RefTriangulation *surface, const double *step, int *saddle)
 {
-    int wanted = ref_zeros_count(surface), found = 0;
-    int *saddle = sm_alloc((size_t)wanted, sizeof *saddle);
-    bool single = true;
-    for (int v = 0; v < surface->vertices && single; v++) {
-        if (surface->rim[surface->corner[v]] >= 0) continue;
-        int count = changes(surface, step[1], v);
-        single = count <= 4 && (count < 4 || found < wanted);
-        if (count == 4 && single) saddle[found++] = v;
+    int wanted = 2 * ref_zeros_count(surface), halves = 0, found = 0;
+    for (int v = 0; v < surface->vertices; v++) {
+        bool open = surface->rim[surface->corner[v]] >= 0;
+        int count = changes(surface, step, v), once = open ? 1 : 4;
+        if (count < once) continue;
+        halves += open ? 1 : 2;
+        if (count > once || halves > wanted) return 0;
+        saddle[found++] = v;
     }
-    single = single && found == wanted;
+    return halves == wanted ? found : 0;
+}
+
+int ref_zeros_place(RefTriangulation *surface, double *step[2], int *zero)
+{
+    int *saddle = sm_alloc(2 * (size_t)ref_zeros_count(surface), sizeof *saddle);
+    int found = find_saddles(surface, step[1], saddle);
     Place place = {.surface = surface, .step = step};
-    for (int n = 0; n < wanted && single; n++) single = place_zero(&place, saddle[n], zero + n);
+    bool single = found > 0;
+    for (int n = 0; n < found && single; n++) {
+        bool open = surface->rim[surface->corner[saddle[n]]] >= 0;
+        zero[n] = saddle[n];
+        single = open ? place_on_rim(&place, saddle[n]) : place_zero(&place, saddle[n], zero + n);
+    }
     free(saddle);
-    return single && settle_all(&place);
+    return single && settle_all(&place) ? found : 0;
 }

@@ -9,7 +9,8 @@
 
 #include "triangulation.h"
 
-/* How many zeros a form has whose second part does not change along rims: single ones. */
+/* How many zeros a form has whose second part does not change along rims: single ones, of which two
+ * on a rim count as one. */
 static inline int ref_zeros_count(const RefTriangulation *surface)
 {
     return 2 * surface->genus - 2 + surface->rims;
@@ -18,9 +19,9 @@ static inline int ref_zeros_count(const RefTriangulation *surface)
 /* Puts a vertex at every zero but where one is close, halves edges across from it until its angles
  * are narrow, and moves it in the plane to where no triangle around is turned over; new vertices
  * get what a quadratic function near the zero has. `step`, [2][3 * triangles] from malloc(), grows
- * with the surface. Writes the zeros' vertices into `zero`, [ref_zeros_count()]; false, and
- * everything as it may be, where zeros are double or at a rim, or a triangle is turned over all the
- * same. O(triangles). */
-bool ref_zeros_place(RefTriangulation *surface, double *step[2], int *zero);
+ * with the surface. Writes the zeros' vertices into `zero`, [2 * ref_zeros_count()], and returns
+ * how many; 0, and everything as it may be, where zeros are double or a triangle is turned over all
+ * the same. O(triangles). */
+int ref_zeros_place(RefTriangulation *surface, double *step[2], int *zero);
 
 #endif
