@@ -71,10 +71,8 @@ static bool find_star(const RefTriangulation *surface, RefHolomorphic *basis)
 
 static int longest_rim(const RefTriangulation *surface)
 {
-    double *length = sm_alloc((size_t)surface->rims, sizeof *length);
+    double *length = ref_triangulation_rims(surface);
     int longest = 0;
-    for (long c = 0; c < 3 * surface->triangles; c++)
-        if (surface->rim[c] >= 0) length[surface->rim[c]] += surface->length[c];
     for (int r = 1; r < surface->rims; r++)
         if (length[r] > length[longest]) longest = r;
     free(length);
@@ -190,24 +188,54 @@ void ref_holomorphic_form(const RefTriangulation *surface, const RefHolomorphic 
  * little energy have few and wide cylinders. */
 static const double ENERGY = 0.1;
 
-/* Steps of numbers between rims, halved so often: shares of the whole difference, or of a period.
- */
+/* Roots of cylinders between rims, for each zero, that are as bad as a variance of 1. */
+static const double MANY_ROOTS = 20, UNKNOWN_GAP = 0.02;
+
+/* By so much numbers between rims differ: a share of the greatest difference, or of a period.
+ * Closer choices would all be poor for the same reason. */
 static const double LEVEL = 0.125;
-enum { HALVED = 3 };
 
 /* Of forms that are looked for: every so many triangles, with two steps of each basis form. */
-enum { BEAM = 80, MOST_LOOKED_AT = 4000 };
+enum { BEAM = 80, MOST_LOOKED_AT = 4000, MOST_EXPANDED = 400 };
+typedef struct {
+    double score, *number; /* [count] */
+    bool known;            /* what is near has been considered */
+} Form;
 typedef struct {
     const RefHolomorphic *basis;
     long triangles, stride;
     double *area, (*step)[2], (*dual)[2]; /* [triangles], [count][triangles] */
+    double many_roots;
     int choices;
-    double *number; /* [BEAM][count] the best, best first */
-    double score[BEAM];
+    Form form[BEAM]; /* the best, best first */
 } Choice;
 
-/* The variance of log L, and a share of the energy. */
-static double judge(const Choice *choice, const double *number)
+static int by_value(const void *a, const void *b)
+{
+    const double *p = a, *q = b;
+    return (*p > *q) - (*p < *q);
+}
+
+/* Without handles: how much longer than wide, or wider than long, cylinders between rims are that
+ * have all that flows. Rims on one level have none between them; but on the highest or the lowest
+ * one they have zeros between them that are not on it: it is not known how far. */
+static double thinness(int count, const double *number, double flow)
+{
+    double sum = 0, *level = sm_alloc((size_t)count + 1, sizeof *level);
+    memcpy(level, number, (size_t)count * sizeof *level);
+    qsort(level, (size_t)count + 1, sizeof *level, by_value);
+    for (int k = 0; k < count; k++) {
+        double gap = level[k + 1] - level[k];
+        bool last = level[k] == level[0] || level[k + 1] == level[count];
+        if (last) gap = fmax(gap, UNKNOWN_GAP);
+        if (gap > 1e-9) sum += fmax(flow / gap, gap / flow);
+    }
+    free(level);
+    return sum;
+}
+
+/* The variance of log L, and a share of the energy or of the roots. */
+static double judge(const Choice *choice, const double *number, double many_roots)
 {
     int count = choice->basis->count;
     double sum = 0, square = 0, whole = 0, energy = 0;
@@ -234,7 +262,9 @@ static double judge(const Choice *choice, const double *number)
     free(star);
     energy *= (double)choice->stride;
     return square / whole - sum / whole * (sum / whole) +
-           (choice->basis->loops ? energy / count * ENERGY : 0);
+           (choice->basis->loops
+                ? energy / count * ENERGY
+                : thinness(count, number, energy) / fmax(count - 1, 1) / many_roots);
 }
 
 /* Turned about or scaled, a form has the same leaves: whole numbers have no common divisor, and the
@@ -268,28 +298,22 @@ static bool same(int count, const double *a, const double *b)
     return true;
 }
 
-/* Puts a choice where it belongs among the best; whether it is one and new. */
-static bool consider(Choice *choice, double *number)
+/* Puts a choice where it belongs among the best, if it is one and new. */
+static void consider(Choice *choice, double *number)
 {
     size_t count = (size_t)choice->basis->count, bytes = count * sizeof *number;
-    if (!normalise(choice->basis, number)) return false;
+    if (!normalise(choice->basis, number)) return;
     for (int n = 0; n < choice->choices; n++)
-        if (same((int)count, choice->number + (size_t)n * count, number)) return false;
-    double score = judge(choice, number);
-    int at = choice->choices;
-    if (at == BEAM && !(score < choice->score[BEAM - 1])) return false;
-    if (at < BEAM)
-        choice->choices++;
-    else
-        at--;
-    for (; at > 0 && choice->score[at - 1] > score; at--) {
-        choice->score[at] = choice->score[at - 1];
-        memcpy(choice->number + (size_t)at * count, choice->number + (size_t)(at - 1) * count,
-               bytes);
-    }
-    choice->score[at] = score;
-    memcpy(choice->number + (size_t)at * count, number, bytes);
-    return true;
+        if (same((int)count, choice->form[n].number, number)) return;
+    double score = judge(choice, number, choice->many_roots);
+    if (choice->choices == BEAM && !(score < choice->form[BEAM - 1].score)) return;
+    if (choice->choices < BEAM) choice->choices++;
+    int at = choice->choices - 1;
+    Form form = {.score = score, .number = choice->form[at].number};
+    for (; at > 0 && choice->form[at - 1].score > score; at--)
+        choice->form[at] = choice->form[at - 1];
+    memcpy(form.number, number, bytes);
+    choice->form[at] = form;
 }
 
 /* Considers what flows from one rim to another and through no third one, for all two. */
@@ -310,28 +334,38 @@ static void consider_flows(Choice *choice)
     sm_free_all(A, c);
 }
 
-/* Considers what differs from the best in one number, whole ones by one, as long as that makes them
- * better. */
+/* Considers what differs from another choice in one number: whole ones by one, others by a step, or
+ * they are another rim's. */
+static void consider_near(Choice *choice, const double *from, double *next)
+{
+    int count = choice->basis->count, loops = choice->basis->loops;
+    for (int k = 0; k < count; k++)
+        for (int j = -2; j < count; j++) {
+            if (j >= 0 && (k < loops || j < loops || j == k)) continue;
+            memcpy(next, from, (size_t)count * sizeof *next);
+            next[k] = j >= 0 ? from[j] : from[k] + (j == -1 ? 1 : -1) * (k < loops ? 1 : LEVEL);
+            consider(choice, next);
+        }
+}
+
+/* Considers what is near the best whose neighbours are not known, until they all are. */
 static void search(Choice *choice)
 {
-    int count = choice->basis->count, loops = choice->basis->loops, halved = 0;
-    size_t size = (size_t)BEAM * (size_t)count;
-    double *from = sm_alloc(size, sizeof *from), *next = sm_alloc((size_t)count, sizeof *next);
-    double level = LEVEL;
-    if (loops == 0) consider_flows(choice);
-    for (int round = 0; round < 2 * count && halved <= HALVED; round++) {
-        int known = choice->choices ? choice->choices : 1; /* zeros first */
-        bool better = false;
-        memcpy(from, choice->number, size * sizeof *from);
-        for (int n = 0; n < known; n++)
-            for (int k = 0; k < 2 * count; k++) {
-                memcpy(next, from + n * count, (size_t)count * sizeof *next);
-                next[k / 2] += (k % 2 ? -1 : 1) * (k / 2 < loops ? 1 : level);
-                better |= consider(choice, next);
-            }
-        if (better) continue;
-        halved += count > loops ? 1 : HALVED + 1;
-        level /= 2;
+    size_t count = (size_t)choice->basis->count;
+    double *from = sm_alloc(count, sizeof *from), *next = sm_alloc(count, sizeof *next);
+    choice->choices = 0;
+    consider_near(choice, from, next); /* zeros first */
+    if (choice->basis->loops == 0) consider_flows(choice);
+    for (int n = 0, looked = 0; n < choice->choices && looked < MOST_EXPANDED;) {
+        if (choice->form[n].known) {
+            n++;
+            continue;
+        }
+        choice->form[n].known = true;
+        memcpy(from, choice->form[n].number, count * sizeof *from);
+        consider_near(choice, from, next);
+        looked++;
+        n = 0;
     }
     sm_free_all(from, next);
 }
@@ -346,7 +380,8 @@ int ref_holomorphic_choose(const RefTriangulation *surface, const RefHolomorphic
     choice.area = sm_alloc(triangles, sizeof *choice.area);
     choice.step = sm_alloc(count * triangles, sizeof *choice.step);
     choice.dual = sm_alloc(count * triangles, sizeof *choice.dual);
-    choice.number = sm_alloc(BEAM * count, sizeof *choice.number);
+    double *room = sm_alloc(BEAM * count, sizeof *room);
+    for (size_t n = 0; n < BEAM; n++) choice.form[n].number = room + n * count;
     for (size_t t = 0; t < triangles; t++) {
         size_t c = 3 * t * (size_t)stride;
         double cotangent[3];
@@ -357,10 +392,16 @@ int ref_holomorphic_choose(const RefTriangulation *surface, const RefHolomorphic
                 choice.dual[k * triangles + t][d] = basis->dual[k][c + d];
             }
     }
-    search(&choice);
-    int found = choice.choices < wanted ? choice.choices : wanted;
-    memcpy(number, choice.number, (size_t)found * count * sizeof *number);
-    memcpy(score, choice.score, (size_t)found * sizeof *score);
-    sm_free_all(choice.area, choice.step, choice.dual, choice.number);
+    int found = 0, parts = basis->loops ? 1 : 2;
+    for (int part = 0; part < parts; part++) {
+        choice.many_roots = part ? INFINITY : MANY_ROOTS;
+        search(&choice);
+        for (int n = 0; n < choice.choices && n < wanted / parts; n++, found++) {
+            double *one = number + (size_t)found * count;
+            memcpy(one, choice.form[n].number, count * sizeof *one);
+            score[found] = judge(&choice, one, INFINITY);
+        }
+    }
+    sm_free_all(choice.area, choice.step, choice.dual, room);
     return found;
 }

@@ -9,7 +9,7 @@
 #include "holomorphic.h"
 #include "zeros.h"
 
-enum { TRIED = 80, MOST_TRIANGLES = 100000, MOST_FORMS = 12 };
+enum { TRIED = 80, MOST_TRIANGLES = 100000, MOST_FORMS = 16 };
 /* Cells for each zero that are as bad as 1 of a form's score; and roots of each cylinder that are
  * too many. */
 static const double MANY_CELLS = 20, MOST_ROOTS = 100;
@@ -95,6 +95,7 @@ static bool try_all(const RefTriangulation *surface, const RefHolomorphic *basis
     int count = ref_holomorphic_choose(surface, basis, TRIED, number, score);
     for (int n = 0; n < count; n++) {
         Attempt attempt;
+        if (!(score[n] < least)) continue; /* with any cylinders */
         if (!try(surface, basis, number + n * basis->count, &attempt)) continue;
         double cells = cells_of(&attempt.leaves.cylinders) / ref_zeros_count(surface);
         double found = score[n] + cells / MANY_CELLS;

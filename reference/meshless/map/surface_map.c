@@ -624,20 +624,42 @@ static SmCode map_any(const char *name, RefSurfaceMap *map, SmError *error)
     return code;
 }
 
-/* Cuts handles, of which a closed surface may keep one, as long as they are slender or their
- * tunnels narrow; returns how many. */
-static int cut_handles(RefTriangulation *surface, double limit)
+/* Whether the surface keeps more than the map of one rectangle takes. */
+static bool needs_cylinders(const RefTriangulation *surface)
 {
-    int cut = 0;
-    while (surface->genus > (surface->rims == 0 ? 1 : 0)) {
-        int *loop = sm_alloc((size_t)surface->vertices, sizeof *loop);
-        long count = ref_cuts_handle(surface, limit, loop);
-        if (count) ref_triangulation_cut(surface, count, loop);
-        free(loop);
-        if (count == 0) break;
-        cut++;
-    }
+    RefMapKind kind = kind_of(surface);
+    return kind == REF_MAP_MULTITORUS || kind == REF_MAP_HOLED;
+}
+
+/* Cuts a handle that is slender or whose tunnel is narrow, unless a rim is shorter; whether there
+ * is one. */
+static bool cut_handle(RefTriangulation *surface, double limit, double rim)
+{
+    int *loop = sm_alloc((size_t)surface->vertices, sizeof *loop);
+    long count = surface->genus > 0 ? ref_cuts_handle(surface, limit, loop) : 0;
+    double length = 0;
+    for (long n = 0; n < count; n++) length += surface->length[loop[n]];
+    bool cut = count > 0 && length < rim;
+    if (cut) ref_triangulation_cut(surface, count, loop);
+    free(loop);
     return cut;
+}
+
+/* Closes the shortest rim or cuts the handle with the shortest line around it, whichever is
+ * shorter; false where all are long, or one rectangle will do. */
+static bool simplify(RefSurfaceMap *map)
+{
+    RefTriangulation *surface = &map->surface->triangles;
+    double unit = sqrt(ref_triangulation_area(surface)), shortest = INFINITY;
+    double *length = ref_triangulation_rims(surface);
+    for (int r = 0; r < surface->rims; r++) shortest = fmin(shortest, length[r]);
+    free(length);
+    if (!needs_cylinders(surface)) return false;
+    bool cut = cut_handle(surface, largest_hole, shortest);
+    map->handles += cut;
+    if (cut || shortest > largest_hole * unit) return cut;
+    map->closed += ref_triangulation_close(surface, shortest / unit * (1 + 1e-9), 0, 0);
+    return true;
 }
 
 static SmCode map_mended(const char *name, RefSurfaceMap *map, SmError *error)
@@ -650,25 +672,36 @@ static SmCode map_mended(const char *name, RefSurfaceMap *map, SmError *error)
     return code;
 }
 
-/* With all its handles; where they have no map, or one that turns triangles over, without those
- * that can be cut, if that is better. */
-static SmCode map_whole(const char *name, RefSurfaceMap *map, SmError *error)
+static RefSurfaceMap copy_of(const RefSurfaceMap *map)
 {
-    RefTriangulation *surface = &map->surface->triangles;
-    if (surface->genus < 2 || surface->rims > 0) return map_mended(name, map, error);
     RefSurfaceMap other = *map;
     other.surface = sm_alloc(1, sizeof *other.surface);
-    other.surface->triangles = ref_triangulation_copy(surface);
+    other.surface->triangles = ref_triangulation_copy(&map->surface->triangles);
+    return other;
+}
+
+/* With all its handles and rims; as long as they have no map, or one that turns triangles over,
+ * without some that are short, one at first, then two more, then four more: the best of these. */
+static SmCode map_whole(const char *name, RefSurfaceMap *map, SmError *error)
+{
+    RefSurfaceMap rest = copy_of(map);
     SmCode code = map_mended(name, map, error);
-    bool poor = code == SM_INPUT || (code == SM_OK && map->flips > 0);
-    int cut = poor ? cut_handles(&other.surface->triangles, largest_hole) : 0;
-    other.handles += cut;
-    bool better = cut > 0 && map_mended(name, &other, code == SM_OK ? NULL : error) == SM_OK &&
-                  (code != SM_OK || other.flips < map->flips);
-    RefSurfaceMap worse = better ? *map : other;
-    if (better) *map = other;
-    ref_surface_map_free(&worse);
-    return better ? SM_OK : code;
+    bool more = true;
+    for (int steps = 1; more && (code == SM_INPUT || (code == SM_OK && map->flips > 0));
+         steps *= 2) {
+        more = simplify(&rest);
+        if (!more) break;
+        for (int n = 1; n < steps && more; n++) more = simplify(&rest);
+        RefSurfaceMap other = copy_of(&rest);
+        bool better = map_mended(name, &other, code == SM_OK ? NULL : error) == SM_OK &&
+                      (code != SM_OK || other.flips < map->flips);
+        RefSurfaceMap worse = better ? *map : other;
+        if (better) *map = other;
+        if (better) code = SM_OK;
+        ref_surface_map_free(&worse);
+    }
+    ref_surface_map_free(&rest);
+    return code;
 }
 
 /* Maps what a mesh has; `share` and `edges` say what is dropped and closed. */
@@ -682,9 +715,7 @@ static SmCode map_mesh(const SmMesh *mesh, const char *name, double share, long 
     if (code == SM_OK) {
         map->dropped = mesh->triangle_count - surface->triangles;
         map->closed = ref_triangulation_close(surface, hole, edges, largest_hole);
-        map->handles = cut_handles(surface, surface->rims ? largest_hole : hole);
-        if (surface->rims > (surface->genus == 0 ? 2 : 0))
-            map->closed += ref_triangulation_close(surface, largest_hole, 0, 0);
+        while (needs_cylinders(surface) && cut_handle(surface, hole, INFINITY)) map->handles++;
         if (surface->rims == 1) /* which needs four corners */
             map->closed += ref_triangulation_close(surface, 0, 3, INFINITY);
         code = map_whole(name, map, error);

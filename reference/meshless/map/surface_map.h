@@ -45,7 +45,7 @@ typedef struct {
     double angle_median, angle_95;
     long dropped;          /* the mesh's triangles that are doubled, or of small other pieces */
     int handles;           /* that were cut */
-    int closed;            /* short rims, taken for holes of a scan and closed */
+    int closed;            /* rims: short ones, and those with which there is no map */
     long triangles, flips; /* flips: turned over in the plane, or collapsed */
     double seconds;
     struct RefMapSurface *surface; /* private */
@@ -53,15 +53,17 @@ typedef struct {
 
 /* Maps the surface. Pieces of up to 1% of the triangles are dropped. Rims are closed, each with a
  * vertex in its middle but those of two edges, that are shorter than a tenth of the root of the
- * area, or than a half if they have three edges or there are more than two; and an only
- * rim of three edges, however long. Of closed surfaces handles beyond the first are cut where a
- * line around them or through their tunnel is shorter than a tenth, and both sides closed; up to a
- * half where no map of a multitorus is found; of others all handles up to a half. The mesh has
- * passed sm_mesh_prepare(), and is no longer needed afterwards; `name` is for messages. Up to three
- * factorisations of [vertices], for a cap or a sphere one of them and one of [2 * vertices]; as
- * many again where a triangle is turned over at first. The caller frees. Errors: triangulation.h's
- * and solver.h's; SM_INPUT, one of several cylinders of whose maps each turns a triangle over, and
- * one whose parts stick out so far that over 1% of the triangles collapse in double precision. */
+ * area, or than a half if they have three edges; and an only rim of three edges, however long.
+ * Handles that one rectangle does not take are cut where a line around them or through their tunnel
+ * is shorter than a tenth, and both sides closed. Where no map of several cylinders is found that
+ * turns no triangle over, the shortest of rims and such lines is closed or cut, too, then two more,
+ * then four more, up to a half, and the best map is kept. The mesh has passed sm_mesh_prepare(),
+ * and is no longer needed afterwards; `name` is for messages. Up to three factorisations of
+ * [vertices], for a cap or a sphere one of them and one of [2 * vertices]; as many again where a
+ * triangle is turned over at first, or for each of those that are tried. The caller frees. Errors:
+ * triangulation.h's and solver.h's; SM_INPUT, one of several cylinders of whose maps each turns a
+ * triangle over, and one whose parts stick out so far that over 1% of the triangles collapse in
+ * double precision. */
 SmCode ref_surface_map_create(const SmMesh *mesh, const char *name, RefSurfaceMap *map,
                               SmError *error);
 

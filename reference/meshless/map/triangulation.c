@@ -367,6 +367,14 @@ static void close_rim(RefTriangulation *surface, int first, long edges, const do
         fill_rim(surface, first, middle, edges);
 }
 
+double *ref_triangulation_rims(const RefTriangulation *surface)
+{
+    double *length = sm_alloc((size_t)surface->rims, sizeof *length);
+    for (long c = 0; c < 3 * surface->triangles; c++)
+        if (surface->rim[c] >= 0) length[surface->rim[c]] += surface->length[c];
+    return length;
+}
+
 int ref_triangulation_close(RefTriangulation *surface, double limit, long most, double few_limit)
 {
     double unit = sqrt(ref_triangulation_area(surface)), length, middle[3];

@@ -61,6 +61,9 @@ SmCode ref_triangulation_create(const SmMesh *mesh, const char *name, double sha
                                 RefTriangulation *surface, SmError *error);
 void ref_triangulation_free(RefTriangulation *surface);
 
+/* The lengths of all rims, [rims]; the caller frees. O(triangles). */
+double *ref_triangulation_rims(const RefTriangulation *surface);
+
 /* Closes rims that are shorter than `limit` times the root of the surface's area, or have at most
  * so many edges and are shorter than `few_limit` times it, with triangles around the middle of
  * each; returns how many. */
