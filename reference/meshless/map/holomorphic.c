@@ -196,7 +196,7 @@ static const double MANY_ROOTS = 20, UNKNOWN_GAP = 0.02;
 static const double LEVEL = 0.125;
 
 /* Of forms that are looked for: every so many triangles, with two steps of each basis form. */
-enum { BEAM = 80, MOST_LOOKED_AT = 4000, MOST_EXPANDED = 400 };
+enum { BEAM = 80, MOST_LOOKED_AT = 4000, MOST_JUDGED = 5000 };
 typedef struct {
     double score, *number; /* [count] */
     bool known;            /* what is near has been considered */
@@ -206,7 +206,7 @@ typedef struct {
     long triangles, stride;
     double *area, (*step)[2], (*dual)[2]; /* [triangles], [count][triangles] */
     double many_roots;
-    int choices;
+    int judged, choices;
     Form form[BEAM]; /* the best, best first */
 } Choice;
 
@@ -306,6 +306,7 @@ static void consider(Choice *choice, double *number)
     for (int n = 0; n < choice->choices; n++)
         if (same((int)count, choice->form[n].number, number)) return;
     double score = judge(choice, number, choice->many_roots);
+    choice->judged++;
     if (choice->choices == BEAM && !(score < choice->form[BEAM - 1].score)) return;
     if (choice->choices < BEAM) choice->choices++;
     int at = choice->choices - 1;
@@ -353,10 +354,10 @@ static void search(Choice *choice)
 {
     size_t count = (size_t)choice->basis->count;
     double *from = sm_alloc(count, sizeof *from), *next = sm_alloc(count, sizeof *next);
-    choice->choices = 0;
+    choice->choices = choice->judged = 0;
     consider_near(choice, from, next); /* zeros first */
     if (choice->basis->loops == 0) consider_flows(choice);
-    for (int n = 0, looked = 0; n < choice->choices && looked < MOST_EXPANDED;) {
+    for (int n = 0; n < choice->choices && choice->judged < MOST_JUDGED;) {
         if (choice->form[n].known) {
             n++;
             continue;
@@ -364,7 +365,6 @@ static void search(Choice *choice)
         choice->form[n].known = true;
         memcpy(from, choice->form[n].number, count * sizeof *from);
         consider_near(choice, from, next);
-        looked++;
         n = 0;
     }
     sm_free_all(from, next);

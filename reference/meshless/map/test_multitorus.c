@@ -156,6 +156,33 @@ TEST(a_sheet_with_holes_is_cylinders_with_rims)
     }
 }
 
+/* Small holes stay where there is a map with them; of more than there is one with, the smallest are
+ * closed. */
+TEST(holes_are_closed_only_where_there_is_no_map)
+{
+    needs_solver();
+    Holes holes = {3, {{0.8, 1.1, 0.15}, {2, 0.9, 0.3}, {3.2, 1, 0.17}}};
+    SmMesh mesh = plate_mesh(&holes, 40, 0.05, &seed);
+    sm_mesh_merge(&mesh);
+    RefSurfaceMap map = map_of(&mesh, REF_MAP_HOLED, 0);
+    assert_int_equal(map.closed, 0);
+    check_and_free(&mesh, &map, 3);
+    for (holes.holes = 0; holes.holes < 18; holes.holes++) {
+        double *hole = holes.hole[holes.holes];
+        hole[0] = 0.4 + 0.64 * (holes.holes % 6);
+        hole[1] = 0.4 + 0.6 * (holes.holes / 6);
+        hole[2] = 0.11 + 0.002 * (holes.holes * 7 % 18);
+    }
+    mesh = plate_mesh(&holes, 60, 0.05, &seed);
+    sm_mesh_merge(&mesh);
+    map = map_of(&mesh, REF_MAP_HOLED, 0);
+    assert_true(map.closed >= 3);
+    assert_int_equal(ref_surface_map_triangles(&map)->rims, 19 - map.closed);
+    assert_true(map.angle_median < 4);
+    ref_surface_map_free(&map);
+    sm_mesh_free(&mesh);
+}
+
 /* Tori in a row, of which the outer ones have a hole, or only the first. */
 static SmMesh open_tori(const Tori *all, int rims, int cells)
 {

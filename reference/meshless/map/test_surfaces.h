@@ -126,7 +126,7 @@ static const Tori triple_torus = {
 /* A plate of 4 by 2, bent up by `bend` x^2, with round holes; irregular. */
 typedef struct {
     int holes;
-    double hole[4][3]; /* middles and radii */
+    double hole[24][3]; /* middles and radii */
 } Holes;
 
 /* By how much a place is outside of all holes; moves it onto a rim that is nearer than `near`. */
