@@ -645,20 +645,41 @@ static bool cut_handle(RefTriangulation *surface, double limit, double rim)
     return cut;
 }
 
+/* The shortest and the longest rim, in roots of the area; infinite and 0 without any. */
+static void rims_of(const RefTriangulation *surface, double *shortest, double *longest)
+{
+    double *length = ref_triangulation_rims(surface);
+    double unit = sqrt(ref_triangulation_area(surface));
+    *shortest = INFINITY, *longest = 0;
+    for (int r = 0; r < surface->rims; r++) {
+        *shortest = fmin(*shortest, length[r] / unit);
+        *longest = fmax(*longest, length[r] / unit);
+    }
+    free(length);
+}
+
+/* Whether this is a closed surface but for three and more holes, as scans have them: conformal
+ * parameters that lead into each are far more uneven than a sphere's. */
+static bool is_punctured(const RefTriangulation *surface)
+{
+    double shortest, longest;
+    rims_of(surface, &shortest, &longest);
+    return surface->genus == 0 && surface->rims > 2 && longest < largest_hole;
+}
+
 /* Closes the shortest rim or cuts the handle with the shortest line around it, whichever is
  * shorter; false where all are long, or one rectangle will do. */
 static bool simplify(RefSurfaceMap *map)
 {
     RefTriangulation *surface = &map->surface->triangles;
-    double unit = sqrt(ref_triangulation_area(surface)), shortest = INFINITY;
-    double *length = ref_triangulation_rims(surface);
-    for (int r = 0; r < surface->rims; r++) shortest = fmin(shortest, length[r]);
-    free(length);
+    double shortest, longest;
+    rims_of(surface, &shortest, &longest);
     if (!needs_cylinders(surface)) return false;
-    bool cut = cut_handle(surface, largest_hole, shortest);
+    bool cut =
+        cut_handle(surface, largest_hole, shortest * sqrt(ref_triangulation_area(surface)));
     map->handles += cut;
-    if (cut || shortest > largest_hole * unit) return cut;
-    map->closed += ref_triangulation_close(surface, shortest / unit * (1 + 1e-9), 0, 0);
+    if (cut || shortest > largest_hole) return cut;
+    map->closed += ref_triangulation_close(surface, shortest * (1 + 1e-9), 0, 0);
     return true;
 }
 
@@ -716,6 +737,8 @@ static SmCode map_mesh(const SmMesh *mesh, const char *name, double share, long 
         map->dropped = mesh->triangle_count - surface->triangles;
         map->closed = ref_triangulation_close(surface, hole, edges, largest_hole);
         while (needs_cylinders(surface) && cut_handle(surface, hole, INFINITY)) map->handles++;
+        if (is_punctured(surface))
+            map->closed += ref_triangulation_close(surface, largest_hole, 0, 0);
         if (surface->rims == 1) /* which needs four corners */
             map->closed += ref_triangulation_close(surface, 0, 3, INFINITY);
         code = map_whole(name, map, error);
