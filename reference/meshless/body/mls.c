@@ -37,16 +37,10 @@ void ref_shape_free(RefShape *shape)
     *shape = (RefShape){0};
 }
 
-/* Second derivatives of weights jump at the ends of covers and half-way to them, and covers of
- * whole numbers of edges have both on integration points of larger cells. A weight's outer parts
- * begin this little farther in, so that such points are always in those, however they are rounded.
- */
-static const double INSIDE = 1 - 1e-9;
-
 double ref_mls_spline(double s, double slope[2])
 {
     double a = fabs(s);
-    bool near = a < 0.5 * INSIDE;
+    bool near = a < 0.5 * REF_MLS_INSIDE;
     slope[0] = near ? -4 * s : copysign(4 * (1 - a), -s);
     slope[1] = near ? -4 : 4;
     return near ? 1 - 2 * s * s : 2 * (1 - a) * (1 - a);
@@ -128,7 +122,9 @@ INLINE void gather(const RefNodes *nodes, int dims, int terms, const double x[3]
         const double *at = nodes->position[member[n]];
         double reach = nodes->reach[member[n]], s[3] = {0};
         for (int d = 0; d < dims; d++) s[d] = (x[d] - at[d]) / reach;
-        if (!(fabs(s[0]) < INSIDE && fabs(s[1]) < INSIDE && fabs(s[2]) < INSIDE)) continue;
+        if (!(fabs(s[0]) < REF_MLS_INSIDE && fabs(s[1]) < REF_MLS_INSIDE &&
+              fabs(s[2]) < REF_MLS_INSIDE))
+            continue;
         double *w = shape->scratch + (size_t)count * (size_t)(parts + terms), *p = w + parts;
         weigh(dims, s, reach, w);
         if (home >= 0 && !gets_past(nodes, member[n], home, x, w)) continue;

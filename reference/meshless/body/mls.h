@@ -49,6 +49,12 @@ bool ref_mls_sees(const RefNodes *nodes, long n, const double x[3]);
 /* The node nearest to x, of those that it sees if there are such. O(nodes). */
 long ref_mls_nearest(const RefNodes *nodes, const double x[3]);
 
+/* Second derivatives of weights jump at the ends of covers and half-way to them, and covers of
+ * whole numbers of edges have both on integration points of larger cells. A weight's outer parts
+ * begin this little farther in, so that such points are always in those, however they are rounded.
+ */
+#define REF_MLS_INSIDE (1 - 1e-9)
+
 /* meshless eq. 13, the spline of the weights, by the signed s; the slopes are its first and second
  * derivative, which jumps at a half, less a billionth: that is its outer part's. */
 double ref_mls_spline(double s, double slope[2]);

@@ -10,28 +10,25 @@
 
 enum { BLOCK = 64, LANES = REF_SKIN_LANES };
 
+/* Works on one block at a time. */
 typedef struct {
     const RefSkinCarrier *carrier;
     RefShape shape;
     int *number; /* [nodes] in the block's list, or -1 */
-    int most;    /* functions of a point */
-    int count[BLOCK];
-    int *node, *list; /* [BLOCK][most] of the points; the block's */
-    float *value;
+    int *list;   /* [BLOCK functions] the block's nodes, and */
+    float *row;  /* [like list][BLOCK] their weights at its points */
     float lift[BLOCK];
     long loose;
 } Builder;
 
 static Builder builder_of(const RefSkinCarrier *carrier)
 {
-    int most = carrier->nodes->most;
+    size_t most = BLOCK * (size_t)carrier->nodes->most;
     Builder builder = {.carrier = carrier,
                        .shape = ref_shape_create(carrier->nodes),
                        .number = sm_alloc((size_t)carrier->nodes->count, sizeof(int)),
-                       .most = most,
-                       .node = sm_alloc(BLOCK * (size_t)most, sizeof(int)),
-                       .list = sm_alloc(BLOCK * (size_t)most, sizeof(int)),
-                       .value = sm_alloc(BLOCK * (size_t)most, sizeof(float))};
+                       .list = sm_alloc(most, sizeof(int)),
+                       .row = sm_alloc(most, BLOCK * sizeof(float))};
     for (long n = 0; n < carrier->nodes->count; n++) builder.number[n] = -1;
     return builder;
 }
@@ -39,7 +36,7 @@ static Builder builder_of(const RefSkinCarrier *carrier)
 static void builder_free(Builder *builder)
 {
     ref_shape_free(&builder->shape);
-    sm_free_all(builder->number, builder->node, builder->list, builder->value);
+    sm_free_all(builder->number, builder->list, builder->row);
 }
 
 typedef struct {
@@ -61,10 +58,12 @@ static Keyed *sort_points(const RefSkinCarrier *carrier, long count)
     return key;
 }
 
-/* The weights at point p of a block, or the nearest node alone. */
-static void evaluate(Builder *builder, int p, long point)
+/* The weights at point p of a block, or the nearest node alone: in the rows of nodes, which the
+ * block's list has in the order in which they come. */
+static void evaluate(Builder *builder, RefSkinBlock *block, int p, long point)
 {
     const RefSkinCarrier *carrier = builder->carrier;
+    const RefShape *shape = &builder->shape;
     double lift = 0;
     if (!carrier->weigh(carrier->data, point, &builder->shape, &lift)) {
         builder->loose++;
@@ -73,24 +72,15 @@ static void evaluate(Builder *builder, int p, long point)
         builder->shape.value[0] = 1;
     }
     builder->lift[p] = (float)lift;
-    builder->count[p] = builder->shape.count;
-    for (int n = 0; n < builder->shape.count; n++) {
-        builder->node[p * builder->most + n] = builder->shape.node[n];
-        builder->value[p * builder->most + n] = (float)builder->shape.value[n];
-    }
-}
-
-/* The block's nodes. */
-static void list_nodes(Builder *builder, RefSkinBlock *block)
-{
-    block->nodes = 0;
-    for (int p = 0; p < block->points; p++)
-        for (int n = 0; n < builder->count[p]; n++) {
-            int node = builder->node[p * builder->most + n];
-            if (builder->number[node] >= 0) continue;
-            builder->number[node] = block->nodes;
-            builder->list[block->nodes++] = node;
+    for (int n = 0; n < shape->count; n++) {
+        int *number = builder->number + shape->node[n];
+        if (*number < 0) {
+            *number = block->nodes++;
+            builder->list[*number] = shape->node[n];
+            memset(builder->row + *number * BLOCK, 0, BLOCK * sizeof *builder->row);
         }
+        builder->row[*number * BLOCK + p] += (float)shape->value[n];
+    }
 }
 
 /* Behind all others, with some room for more: a block that changes is likely to change again. */
@@ -108,25 +98,22 @@ static void make_slots(RefSkin *skin, RefSkinBlock *block)
 static void fill_weights(Builder *builder, RefSkin *skin, RefSkinBlock *block)
 {
     float *weight = skin->weight + block->weight;
-    memset(weight, 0, (size_t)block->nodes * (size_t)block->room * sizeof *weight);
     memcpy(skin->node + block->node, builder->list, (size_t)block->nodes * sizeof *skin->node);
-    for (int p = 0; p < block->points; p++) {
-        for (int n = 0; n < builder->count[p]; n++) {
-            int column = builder->number[builder->node[p * builder->most + n]];
-            weight[(p / LANES * block->nodes + column) * LANES + p % LANES] +=
-                builder->value[p * builder->most + n];
-        }
-        if (skin->lift) skin->lift[block->first + p] = builder->lift[p];
-    }
+    for (int first = 0; first < block->room; first += LANES)
+        for (int n = 0; n < block->nodes; n++, weight += LANES)
+            memcpy(weight, builder->row + n * BLOCK + first, LANES * sizeof *weight);
+    if (skin->lift)
+        memcpy(skin->lift + block->first, builder->lift, (size_t)block->points * sizeof(float));
     for (int n = 0; n < block->nodes; n++) builder->number[builder->list[n]] = -1;
 }
 
 static void weigh_block(Builder *builder, RefSkin *skin, RefSkinBlock *block)
 {
     long before = builder->loose -= block->loose;
-    for (int p = 0; p < block->points; p++) evaluate(builder, p, skin->order[block->first + p]);
+    block->nodes = 0;
+    for (int p = 0; p < block->points; p++)
+        evaluate(builder, block, p, skin->order[block->first + p]);
     block->loose = (int)(builder->loose - before);
-    list_nodes(builder, block);
     if (block->nodes > block->slots) make_slots(skin, block);
     fill_weights(builder, skin, block);
 }

@@ -31,7 +31,7 @@ static double length_of(const double a[2])
 
 void ref_cracks_create(const RefChart *chart, double margin, RefCracks *cracks)
 {
-    *cracks = (RefCracks){.chart = chart, .margin = margin, .box = {-1}};
+    *cracks = (RefCracks){.chart = chart, .margin = margin, .stale = true};
 }
 
 void ref_cracks_free(RefCracks *cracks)
@@ -136,13 +136,23 @@ static void bin_pieces(RefCracks *cracks)
         sm_make_room(cracks->binned, cracks->bin_room, cracks->bin[BINS * BINS]);
     }
     cracks->stale = false;
-    cracks->box[0] = -1;
+    cracks->low[0] = INFINITY; /* nothing is in this box */
 }
 
-/* Takes all pieces of these bins, rising. */
-static void gather(RefCracks *cracks, const int box[4])
+static bool touches(const RefCrackPiece *piece, const double low[2], const double high[2])
 {
-    memcpy(cracks->box, box, sizeof cracks->box);
+    double from[2], to[2];
+    box_of(piece, from, to);
+    return from[0] <= high[0] && to[0] >= low[0] && from[1] <= high[1] && to[1] >= low[1];
+}
+
+/* Takes all pieces whose boxes touch a box, rising. */
+static void gather(RefCracks *cracks, const double low[2], const double high[2])
+{
+    int box[4];
+    bins_of(cracks, low, high, box);
+    memcpy(cracks->low, low, sizeof cracks->low);
+    memcpy(cracks->high, high, sizeof cracks->high);
     cracks->near_count = 0;
     for (int j = box[1]; j <= box[3] && cracks->pieces; j++) {
         long from = cracks->bin[BINS * j + box[0]], end = cracks->bin[BINS * j + box[2] + 1];
@@ -152,35 +162,41 @@ static void gather(RefCracks *cracks, const int box[4])
     long all = cracks->near_count;
     cracks->near_count = 0;
     sm_sort_ints(cracks->near, all);
-    for (long n = 0; n < all; n++)
-        if (n == 0 || cracks->near[n] != cracks->near[n - 1])
-            cracks->near[cracks->near_count++] = cracks->near[n];
+    for (long n = 0; n < all; n++) {
+        int p = cracks->near[n];
+        if ((n == 0 || p != cracks->near[n - 1]) && touches(cracks->piece + p, low, high))
+            cracks->near[cracks->near_count++] = p;
+    }
 }
 
-/* The pieces that touch the box of two places, and others near it, rising: kept for the next such
- * question are those of a box about them that is three times as wide. */
-static const int *among(const RefCracks *cracks, const double a[2], const double b[2], int *count)
+bool ref_cracks_look(const RefCracks *cracks, const double low[2], const double high[2])
 {
     RefCracks *look = (RefCracks *)cracks;
-    double low[2], high[2];
-    int box[4];
     if (look->stale) bin_pieces(look);
+    gather(look, low, high);
+    return look->near_count > 0;
+}
+
+/* The pieces whose boxes touch that of two places, and others near it, rising: of the box that was
+ * looked at last, or one about them that is three times as wide. */
+static const int *among(const RefCracks *cracks, const double a[2], const double b[2], int *count)
+{
+    bool inside = !cracks->stale;
+    double low[2], high[2];
     for (int d = 0; d < 2; d++) {
-        low[d] = fmin(a[d], b[d]);
-        high[d] = fmax(a[d], b[d]);
+        low[d] = a[d] < b[d] ? a[d] : b[d];
+        high[d] = a[d] < b[d] ? b[d] : a[d];
+        inside = inside && low[d] >= cracks->low[d] && high[d] <= cracks->high[d];
     }
-    bins_of(look, low, high, box);
-    if (look->box[0] < 0 || box[0] < look->box[0] || box[1] < look->box[1] ||
-        box[2] > look->box[2] || box[3] > look->box[3]) {
-        for (int d = 0; d < 2; d++) {
-            int wide = 1 + box[2 + d] - box[d];
-            box[d] = box[d] > wide ? box[d] - wide : 0;
-            box[2 + d] = box[2 + d] + wide < BINS ? box[2 + d] + wide : BINS - 1;
-        }
-        gather(look, box);
+    for (int d = 0; !inside && d < 2; d++) {
+        double bin = (cracks->chart->high[d] - cracks->chart->low[d]) / BINS;
+        double wide = high[d] - low[d] + bin;
+        low[d] -= wide;
+        high[d] += wide;
     }
-    *count = (int)look->near_count;
-    return look->near;
+    if (!inside) ref_cracks_look(cracks, low, high);
+    *count = (int)cracks->near_count;
+    return cracks->near;
 }
 
 /* Moves the tip on: what is ahead of the arm's pieces grows by `more`. */
@@ -319,10 +335,11 @@ static bool pass_piece(const RefCrackPiece *piece, double ahead, const double x[
     return true;
 }
 
+static const double whole[6] = {1};
+
 static bool pass(const RefCracks *cracks, bool earlier, const double x[3], const double from[3],
                  double reach, double part[6])
 {
-    static const double whole[6] = {1};
     int count;
     const int *member = among(cracks, x, from, &count);
     memcpy(part, whole, sizeof whole);
@@ -348,15 +365,123 @@ bool ref_cracks_passed(const void *cracks, const double x[3], const double from[
     return pass(cracks, true, x, from, reach, part);
 }
 
-bool ref_cracks_changed(const RefCracks *cracks, const double x[2], const double from[2],
-                        double reach)
+/* The box of a grid and the place that it is seen from. */
+static void box_of_ways(const RefGrid *grid, const double from[2], double low[2], double high[2])
 {
-    int count;
-    const int *member = among(cracks, x, from, &count);
+    for (int d = 0; d < 2; d++) {
+        double first = grid->at[d][0], last = grid->at[d][grid->count[d] - 1];
+        low[d] = from[d] < first ? from[d] : first;
+        high[d] = from[d] > last ? from[d] : last;
+    }
+}
+
+static const int *among_grid(const RefCracks *cracks, const RefGrid *grid, const double from[2],
+                             int *count)
+{
+    double low[2], high[2];
+    box_of_ways(grid, from, low, high);
+    return among(cracks, low, high, count);
+}
+
+/* Whether a piece may be in a way from `from` to a place of a grid: it is not apart from the box of
+ * all, nor are they all on one side of it. */
+static bool may_cross(const RefCrackPiece *piece, const RefGrid *grid, const double from[2])
+{
+    double low[2], high[2], along[2], way[2];
+    box_of_ways(grid, from, low, high);
+    if (!touches(piece, low, high)) return false;
+    way_from(piece->end[0], piece->end[1], along);
+    way_from(piece->end[0], from, way);
+    double side = cross(along, way);
+    bool all = side != 0;
+    for (int c = 0; c < 4; c++) {
+        const double corner[2] = {grid->at[0][c % 2 ? grid->count[0] - 1 : 0],
+                                  grid->at[1][c / 2 ? grid->count[1] - 1 : 0]};
+        way_from(piece->end[0], corner, way);
+        double there = cross(along, way);
+        all = all && (side > 0 ? there > 0 : there < 0);
+    }
+    return !all;
+}
+
+/* crosses() for all places of a grid, of which products of one coordinate each are made once. */
+static bool cross_grid(const RefCrackPiece *piece, const RefGrid *grid, const double from[2],
+                       unsigned char *crossing)
+{
+    enum { PRODUCTS = 4 };
+    const double *e = piece->end[0];
+    double along[2], a[2], to[2], product[2][PRODUCTS][REF_GRID_SIDE];
+    way_from(piece->end[0], piece->end[1], along);
+    way_from(piece->end[0], from, a);
+    way_from(piece->end[1], from, to);
+    for (int d = 0; d < 2; d++)
+        for (int i = 0; i < grid->count[d]; i++) {
+            double x = grid->at[d][i], way = x - from[d];
+            product[d][0][i] = along[!d] * (x - e[d]);
+            product[d][1][i] = way * a[!d];
+            product[d][2][i] = way * to[!d];
+            product[d][3][i] = along[!d] * way;
+        }
+    double side = cross(along, a);
+    bool any = false;
+    for (int j = 0; j < grid->count[1]; j++)
+        for (int i = 0; i < grid->count[0]; i++) {
+            double there = product[1][0][j] - product[0][0][i];
+            double first = product[0][1][i] - product[1][1][j];
+            double second = product[0][2][i] - product[1][2][j];
+            bool apart = ((side > 0) & (there > 0)) | ((side < 0) & (there < 0)) |
+                         ((first > 0) & (second > 0)) | ((first < 0) & (second < 0)) |
+                         (product[1][3][j] == product[0][3][i]);
+            *crossing++ = !apart;
+            any |= !apart;
+        }
+    return any;
+}
+
+/* What is left of a part that a piece takes from. */
+static void take_from(const RefCrackPiece *piece, const double x[2], const double from[2],
+                      double width, double part[6])
+{
+    double f[6];
+    if (part[0] == 0) return;
+    if (piece->ahead < width && pass_piece(piece, piece->ahead, x, from, width, f))
+        ref_mls_multiply(f, part);
+    else
+        memset(part, 0, 6 * sizeof *part);
+}
+
+bool ref_cracks_fan(const RefCracks *cracks, const RefGrid *grid, const double from[2],
+                    double reach, double (*part)[6])
+{
+    unsigned char crossing[REF_GRID_SIDE * REF_GRID_SIDE];
+    int count, places = grid->count[0] * grid->count[1];
+    bool any = false;
+    const int *member = among_grid(cracks, grid, from, &count);
     for (int n = 0; n < count; n++) {
         const RefCrackPiece *piece = cracks->piece + member[n];
-        if (piece->changed != cracks->now || !crosses(piece, x, from)) continue;
-        if (piece->born == cracks->now || piece->before < TIP_REACH * reach) return true;
+        if (!may_cross(piece, grid, from) || !cross_grid(piece, grid, from, crossing)) continue;
+        for (int p = 0; !any && p < places; p++) memcpy(part[p], whole, sizeof whole);
+        any = true;
+        for (int p = 0; p < places; p++) {
+            const double x[2] = {grid->at[0][p % grid->count[0]], grid->at[1][p / grid->count[0]]};
+            if (crossing[p]) take_from(piece, x, from, TIP_REACH * reach, part[p]);
+        }
+    }
+    return any;
+}
+
+bool ref_cracks_fan_changed(const RefCracks *cracks, const RefGrid *grid, const double from[2],
+                            double reach)
+{
+    unsigned char crossing[REF_GRID_SIDE * REF_GRID_SIDE];
+    int count;
+    const int *member = among_grid(cracks, grid, from, &count);
+    for (int n = 0; n < count; n++) {
+        const RefCrackPiece *piece = cracks->piece + member[n];
+        bool changes = piece->changed == cracks->now &&
+                       (piece->born == cracks->now || piece->before < TIP_REACH * reach);
+        if (changes && may_cross(piece, grid, from) && cross_grid(piece, grid, from, crossing))
+            return true;
     }
     return false;
 }
@@ -372,13 +497,9 @@ bool ref_cracks_part(const RefCracks *cracks, const double x[2], const double fr
 
 bool ref_cracks_stir(const RefCracks *cracks, const double low[2], const double high[2])
 {
-    for (long p = 0; p < cracks->pieces; p++) {
-        double from[2], to[2];
-        if (cracks->piece[p].changed != cracks->now) continue;
-        box_of(cracks->piece + p, from, to);
-        if (from[0] <= high[0] && to[0] >= low[0] && from[1] <= high[1] && to[1] >= low[1])
+    for (long p = 0; p < cracks->pieces; p++)
+        if (cracks->piece[p].changed == cracks->now && touches(cracks->piece + p, low, high))
             return true;
-    }
     return false;
 }
 

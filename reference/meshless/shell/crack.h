@@ -40,13 +40,21 @@ typedef struct {
     RefCrackArm *arm;     /* [arms] */
     int now;              /* counts settlements */
     long settled_pieces, settled_arms, settled_room;
-    RefCrackArm *settled; /* [settled_arms] the arms at the last one */
-    bool stale;           /* private, as is the rest: pieces are not in these bins yet */
-    int *bin, *binned;    /* where each bin's pieces begin, and their numbers */
-    int box[4];           /* bins, and all pieces there */
+    RefCrackArm *settled;   /* [settled_arms] the arms at the last one */
+    bool stale;             /* private, as is the rest: pieces are not in these bins yet */
+    int *bin, *binned;      /* where each bin's pieces begin, and their numbers */
+    double low[2], high[2]; /* a box, and all pieces whose boxes touch it */
     long bin_room, near_count, near_room;
     int *near;
 } RefCracks;
+
+/* Places at[0][i], at[1][j]. */
+typedef struct {
+    int count[2]; /* REF_GRID_SIDE at most */
+    const double *at[2];
+} RefGrid;
+
+enum { REF_GRID_SIDE = 6 };
 
 /* No cracks. No cover's reach is above `margin`. The caller frees. */
 void ref_cracks_create(const RefChart *chart, double margin, RefCracks *cracks);
@@ -75,14 +83,24 @@ bool ref_cracks_pass(const void *cracks, const double x[3], const double from[3]
 bool ref_cracks_passed(const void *cracks, const double x[3], const double from[3], double reach,
                        double part[6]);
 
-/* Whether changes that are not settled change what gets from `from` to x of such a weight. */
-bool ref_cracks_changed(const RefCracks *cracks, const double x[2], const double from[2],
-                        double reach);
-
 /* Whether a crack is between two places, the first in the rectangle. */
 bool ref_cracks_part(const RefCracks *cracks, const double x[2], const double from[2]);
 
-/* Whether there is such a change of a piece that touches a box. */
+/* Looks up the pieces whose boxes touch a box, which saves the next questions about ways in it from
+ * doing so; whether there are any. */
+bool ref_cracks_look(const RefCracks *cracks, const double low[2], const double high[2]);
+
+/* What gets from `from` to the places of a grid, as ref_cracks_pass() has it, with zeros where
+ * nothing does: part[grid->count[0] j + i]. False, and nothing written, where no crack is in the
+ * way. */
+bool ref_cracks_fan(const RefCracks *cracks, const RefGrid *grid, const double from[2],
+                    double reach, double (*part)[6]);
+
+/* Whether changes that are not settled change what gets to any place of a grid. */
+bool ref_cracks_fan_changed(const RefCracks *cracks, const RefGrid *grid, const double from[2],
+                            double reach);
+
+/* Whether there is a change that is not settled of a piece whose box touches a box. */
 bool ref_cracks_stir(const RefCracks *cracks, const double low[2], const double high[2]);
 
 /* All changes become what was before. O(pieces). */

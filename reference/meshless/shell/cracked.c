@@ -93,11 +93,11 @@ static void whole_at(const RefCracked *cracked, const double theta[3], RefShape 
 }
 
 /* The samples of a cell; its areas are those of the whole shell. */
-static void take_samples(const RefCracked *cracked, long c, RefShape *shape, RefShape *whole,
+static void take_samples(const RefCracked *cracked, long c, RefSamplesWork *take, RefShape *whole,
                          RefSamples *samples)
 {
     const RefShell *shell = cracked->shell;
-    ref_samples_of(&shell->tree, c, &shell->nodes, shell->basis, shape, samples);
+    ref_samples_of(&shell->tree, c, &shell->nodes, shell->basis, &cracked->cracks, take, samples);
     for (long p = 0; p < samples->count; p++) {
         double x[3], area;
         whole_at(cracked, samples->theta[p], whole, x, &area);
@@ -141,8 +141,7 @@ static void count_all(RefCracked *cracked)
     }
 }
 
-/* The sample of a cell that is nearest to a place and not beyond a crack; -1: none is. */
-static int sample_beside(const RefCracked *cracked, long c, const double theta[2])
+int ref_cracked_sample(const RefCracked *cracked, long c, const double theta[2])
 {
     const RefSamples *samples = &cracked->cell[c].samples;
     const RefQuadtree *tree = &cracked->shell->tree;
@@ -166,7 +165,7 @@ static int functions_at(const void *samples, const double theta[3], RefShape *sh
 {
     const RefCracked *cracked = samples;
     const RefShell *shell = cracked->shell;
-    int c = ref_quadtree_at(&shell->tree, theta), n = sample_beside(cracked, c, theta);
+    int c = ref_quadtree_at(&shell->tree, theta), n = ref_cracked_sample(cracked, c, theta);
     if (n < 0)
         return ref_samples_shape(&shell->nodes, shell->basis, edge_of(cracked, c), theta, shape);
     ref_samples_expand(&cracked->cell[c].samples, n, theta, shape);
@@ -176,7 +175,7 @@ static int functions_at(const void *samples, const double theta[3], RefShape *sh
 bool ref_cracked_side(const RefCracked *cracked, const double theta[2], const double eye[2],
                       RefShape *shape)
 {
-    int c = ref_quadtree_at(&cracked->shell->tree, eye), n = sample_beside(cracked, c, eye);
+    int c = ref_quadtree_at(&cracked->shell->tree, eye), n = ref_cracked_sample(cracked, c, eye);
     double image[2];
     if (n < 0) return false;
     ref_chart_image(cracked->cracks.chart, theta, eye, image);
@@ -191,7 +190,8 @@ bool ref_cracked_seen(const RefCracked *cracked, long node)
 
 int ref_cracked_node(const RefCracked *cracked, const double theta[2])
 {
-    int c = ref_quadtree_at(&cracked->shell->tree, theta), n = sample_beside(cracked, c, theta);
+    int c = ref_quadtree_at(&cracked->shell->tree, theta),
+        n = ref_cracked_sample(cracked, c, theta);
     const RefSamples *samples = &cracked->cell[c].samples;
     return n < 0 || samples->start[n] == samples->start[n + 1] ? -1
                                                                : samples->node[samples->start[n]];
@@ -209,20 +209,21 @@ bool ref_cracked_again(const RefCracked *cracked, long cell)
 void ref_cracked_remake(RefCracked *cracked)
 {
     RefShell *shell = cracked->shell;
-    RefShape shape = ref_shape_create(&shell->nodes), whole = ref_shape_create(&cracked->whole);
+    RefSamplesWork take = ref_samples_work(&shell->nodes);
+    RefShape whole = ref_shape_create(&cracked->whole);
     RefThinWork work = ref_thin_work(shell->nodes.count);
     unsigned char *touched = sm_alloc((size_t)shell->nodes.count, 1);
     memset(touched, 1, (size_t)shell->nodes.count);
     for (long c = 0; c < shell->tree.count; c++) {
         forget_cell(cracked->cell + c);
         if (!terminal(cracked, c)) continue;
-        take_samples(cracked, c, &shape, &whole, &cracked->cell[c].samples);
+        take_samples(cracked, c, &take, &whole, &cracked->cell[c].samples);
         integrate(cracked, cracked->cell + c, &work);
     }
     add_up(cracked, touched);
     count_all(cracked);
     ref_thin_work_free(&work);
-    ref_shape_free(&shape);
+    ref_samples_work_free(&take);
     ref_shape_free(&whole);
     free(touched);
 }
@@ -386,46 +387,31 @@ static void fill_nodes(RefCracked *cracked, const unsigned char *fresh, RefField
     ref_shape_free(&whole);
 }
 
-/* Whether a crack has changed, or a node is new, whose cover may reach a cell. */
-static bool is_stirred(const RefCracked *cracked, long c, long count, const int *fresh)
-{
-    const RefQuadtree *tree = &cracked->shell->tree;
-    const RefNodes *nodes = &cracked->shell->nodes;
-    double middle[2], edge[2], low[2], high[2];
-    ref_quadtree_cell(tree, tree->cell + c, middle, edge);
-    for (long n = 0; n < count; n++) {
-        const double *at = nodes->position[fresh[n]], reach = nodes->reach[fresh[n]];
-        if (fabs(middle[0] - at[0]) < reach + edge[0] / 2 &&
-            fabs(middle[1] - at[1]) < reach + edge[1] / 2)
-            return true;
-    }
-    for (int d = 0; d < 2; d++) {
-        low[d] = middle[d] - edge[d] / 2 - cracked->cracks.margin;
-        high[d] = middle[d] + edge[d] / 2 + cracked->cracks.margin;
-    }
-    return ref_cracks_stir(&cracked->cracks, low, high);
-}
-
-/* Whether samples of a cell have other functions than before. `list` has the `count` new nodes,
- * which `fresh` marks; they may have taken the numbers of nodes that are gone. */
-static bool is_stale(const RefCracked *cracked, long c, const unsigned char *fresh, long count,
-                     const int *list)
+/* Whether samples of a cell have other functions than before. `fresh` marks new nodes, which may
+ * have taken the numbers of nodes that are gone. */
+static bool is_stale(const RefCracked *cracked, long c, const unsigned char *fresh)
 {
     const RefNodes *nodes = &cracked->shell->nodes;
     const RefCrackedCell *cell = cracked->cell + c;
+    double at[2][REF_GRID_SIDE], low[2], high[2], margin = cracked->cracks.margin;
     for (int n = 0; n < cell->element.count; n++)
         if (fresh[cell->element.node[n]]) return true;
-    if (!is_stirred(cracked, c, count, list)) return false;
-    for (long p = 0; p < cell->samples.count; p++) {
-        const double *x = cell->samples.theta[p];
-        int near;
-        const int *member = ref_nodes_near(nodes, x, &near);
-        for (int n = 0; n < near; n++) {
-            const double *at = nodes->position[member[n]], reach = nodes->reach[member[n]];
-            if (!(fabs(x[0] - at[0]) < reach && fabs(x[1] - at[1]) < reach)) continue;
-            if (fresh[nodes->owner ? nodes->owner[member[n]] : member[n]]) return true;
-            if (ref_cracks_changed(&cracked->cracks, x, at, reach)) return true;
-        }
+    ref_samples_grid(&cracked->shell->tree, c, at);
+    for (int d = 0; d < 2; d++) {
+        low[d] = at[d][0] - margin;
+        high[d] = at[d][REF_GRID_SIDE - 1] + margin;
+    }
+    ref_cracks_look(&cracked->cracks, low, high);
+    for (long n = 0; n < nodes->count + nodes->images; n++) {
+        const double *node = nodes->position[n], reach = nodes->reach[n];
+        RefGrid grid;
+        int first[2];
+        if (!(node[0] - low[0] > margin - reach && high[0] - node[0] > margin - reach &&
+              node[1] - low[1] > margin - reach && high[1] - node[1] > margin - reach) ||
+            !ref_samples_reached((const double(*)[REF_GRID_SIDE])at, node, reach, first, &grid))
+            continue;
+        if (fresh[nodes->owner ? nodes->owner[n] : n]) return true;
+        if (ref_cracks_fan_changed(&cracked->cracks, &grid, node, reach)) return true;
     }
     return false;
 }
@@ -435,27 +421,15 @@ static void touch(const RefElement *element, unsigned char *touched)
     for (int n = 0; n < element->count; n++) touched[element->node[n]] = 1;
 }
 
-/* New nodes and their images: `count` of them, the caller's to free. */
-static int *list_fresh(const RefNodes *nodes, const unsigned char *fresh, long *count)
-{
-    long all = nodes->count + nodes->images;
-    int *list = sm_alloc((size_t)all, sizeof *list);
-    *count = 0;
-    for (long n = 0; n < all; n++)
-        if (fresh[nodes->owner ? nodes->owner[n] : n]) list[(*count)++] = (int)n;
-    return list;
-}
-
 /* Takes again what is not what it was; marks nodes whose rows change. Samples that there were are
  * kept in `before`. */
 static void remake_stale(RefCracked *cracked, const unsigned char *fresh, unsigned char *touched,
                          RefFieldsBefore *before)
 {
     RefShell *shell = cracked->shell;
-    RefShape shape = ref_shape_create(&shell->nodes), whole = ref_shape_create(&cracked->whole);
+    RefSamplesWork take = ref_samples_work(&shell->nodes);
+    RefShape whole = ref_shape_create(&cracked->whole);
     RefThinWork work = ref_thin_work(shell->nodes.count);
-    long count;
-    int *list = list_fresh(&shell->nodes, fresh, &count);
     before->cells = shell->tree.count;
     before->samples = sm_alloc((size_t)before->cells, sizeof *before->samples);
     for (long c = 0; c < shell->tree.count; c++) {
@@ -463,7 +437,7 @@ static void remake_stale(RefCracked *cracked, const unsigned char *fresh, unsign
         const RefSamples *old = before->samples + c;
         bool was = cell->made;
         cell->again = false;
-        if (was && terminal(cracked, c) && !is_stale(cracked, c, fresh, count, list)) continue;
+        if (was && terminal(cracked, c) && !is_stale(cracked, c, fresh)) continue;
         touch(&cell->element, touched);
         before->samples[c] = cell->samples;
         cell->samples = (RefSamples){.count = 0};
@@ -475,18 +449,18 @@ static void remake_stale(RefCracked *cracked, const unsigned char *fresh, unsign
             continue;
         }
         if (was) {
-            ref_samples_of(&shell->tree, c, &shell->nodes, shell->basis, &shape, &cell->samples);
+            ref_samples_of(&shell->tree, c, &shell->nodes, shell->basis, &cracked->cracks, &take,
+                           &cell->samples);
             memcpy(cell->samples.area, old->area, REF_SAMPLES_PER_CELL * sizeof *old->area);
             memcpy(cell->samples.trace, old->trace, REF_SAMPLES_PER_CELL * sizeof *old->trace);
         } else
-            take_samples(cracked, c, &shape, &whole, &cell->samples);
+            take_samples(cracked, c, &take, &whole, &cell->samples);
         integrate(cracked, cell, &work);
         touch(&cell->element, touched);
         cracked->counts.cells_again++;
     }
-    free(list);
     ref_thin_work_free(&work);
-    ref_shape_free(&shape);
+    ref_samples_work_free(&take);
     ref_shape_free(&whole);
 }
 

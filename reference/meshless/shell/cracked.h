@@ -103,6 +103,10 @@ void ref_cracked_saved_free(RefCrackedSaved *saved);
 bool ref_cracked_side(const RefCracked *cracked, const double theta[2], const double eye[2],
                       RefShape *shape);
 
+/* Of a terminal cell's samples the one whose functions are those of a place in it: the nearest that
+ * no crack parts from it; -1: none is. */
+int ref_cracked_sample(const RefCracked *cracked, long cell, const double theta[2]);
+
 /* Whether any sample sees a node; others are tied to where they are by a stiffness of their own. */
 bool ref_cracked_seen(const RefCracked *cracked, long node);
 

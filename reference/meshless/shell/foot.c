@@ -7,6 +7,21 @@
 
 enum { MOST_STEPS = 12 };
 
+/* What a sample of a cracked shell says of all that is nearest to it: the sums of places and of
+ * normals with its functions' parts. */
+typedef struct {
+    bool summed, tame; /* tame: ref_samples_expand() takes nothing back there */
+    double X[6][3], normal[6][3];
+} Sight;
+
+/* The samples of the terminal cell that points were in last. */
+typedef struct {
+    long cell; /* -1: none */
+    double low[2], high[2];
+    bool whole; /* no crack touches it */
+    Sight sight[REF_SAMPLES_PER_CELL];
+} Glass;
+
 typedef struct {
     const RefShell *shell;
     const RefWarp *warp;
@@ -14,6 +29,7 @@ typedef struct {
     const double (*x)[3];
     const RefCracked *cracked;
     const bool *leant;
+    Glass *glass;
 } Feet;
 
 static long cell_of(const void *data, long point)
@@ -95,6 +111,16 @@ static void find_foot(const double place[3][3], const double normal[3][3], const
     if (!(off < 1e-6 * height && beyond(o, edge, height) <= 1)) memcpy(o, first, sizeof first);
 }
 
+/* The offsets of x in a cell, from place and normal there; false where functions are constant. */
+static bool offsets(const double place[3][3], const double normal[3][3], const double x[3],
+                    const double edge[2], double o[3])
+{
+    double length = sqrt(sqrt(sm_dot(place[1], place[1]) * sm_dot(place[2], place[2])));
+    if (length == 0) return false;
+    find_foot(place, normal, x, edge, 2 * length * fmax(edge[0], edge[1]), o);
+    return true;
+}
+
 void ref_foot_of(const RefShell *shell, const RefWarp *warp, const double theta[2],
                  const double x[3], RefShape *shape, double *lift)
 {
@@ -103,10 +129,7 @@ void ref_foot_of(const RefShell *shell, const RefWarp *warp, const double theta[
     *lift = 0;
     sum_parts(warp, shape, place, normal);
     ref_quadtree_cell(tree, tree->cell + ref_quadtree_at(tree, theta), middle, edge);
-    double length = sqrt(sqrt(sm_dot(place[1], place[1]) * sm_dot(place[2], place[2])));
-    if (length == 0) return; /* functions that are constant there */
-    find_foot((const double(*)[3])place, (const double(*)[3])normal, x, edge,
-              2 * length * fmax(edge[0], edge[1]), o);
+    if (!offsets((const double(*)[3])place, (const double(*)[3])normal, x, edge, o)) return;
     *lift = o[2];
     for (int n = 0; n < shape->count; n++)
         shape->value[n] += o[0] * shape->gradient[n][0] + o[1] * shape->gradient[n][1];
@@ -128,6 +151,115 @@ static bool weigh(const void *data, long point, RefShape *shape, double *lift)
     return ref_foot_at(feet->shell, feet->warp, feet->theta[point], feet->x[point], shape, lift);
 }
 
+/* Points go on in the same cell mostly. */
+static void look_at(const RefCracked *cracked, const double theta[2], Glass *glass)
+{
+    const RefQuadtree *tree = &cracked->shell->tree;
+    bool inside = glass->cell >= 0;
+    for (int d = 0; d < 2; d++)
+        inside = inside && theta[d] > glass->low[d] && theta[d] < glass->high[d];
+    long cell = inside ? glass->cell : ref_quadtree_at(tree, theta);
+    if (cell == glass->cell) return;
+    double middle[2], edge[2];
+    glass->cell = cell;
+    ref_quadtree_cell(tree, tree->cell + cell, middle, edge);
+    for (int d = 0; d < 2; d++) {
+        glass->low[d] = middle[d] - edge[d] / 2;
+        glass->high[d] = middle[d] + edge[d] / 2;
+    }
+    glass->whole = !ref_cracks_look(&cracked->cracks, glass->low, glass->high);
+    for (int s = 0; s < REF_SAMPLES_PER_CELL; s++) glass->sight[s].summed = false;
+}
+
+/* A tenth of an edge, beyond which another sample is nearer. */
+static const double NEAR = 0.1;
+
+/* Taylor's series from a sample, of functions or of their sums, are of 1, x, y, x^2 / 2, y^2 / 2
+ * and x y; along offsets o from there they go on by their slopes. */
+static void series(double x, double y, const double o[2], double times[6])
+{
+    times[0] = 1;
+    times[1] = x + o[0];
+    times[2] = y + o[1];
+    times[3] = x * (x / 2 + o[0]);
+    times[4] = y * (y / 2 + o[1]);
+    times[5] = x * y + o[0] * y + o[1] * x;
+}
+
+static void sum_sight(const RefWarp *warp, const RefSamples *samples, int s, const double edge[2],
+                      Sight *sight)
+{
+    const double none[2] = {0};
+    double most[6];
+    *sight = (Sight){.summed = true, .tame = true};
+    series(NEAR * edge[0], NEAR * edge[1], none, most);
+    for (long e = samples->start[s]; e < samples->start[s + 1]; e++) {
+        const double *part = samples->part[e], *X = warp->X[samples->node[e]];
+        const double *normal = warp->rest_normal[samples->node[e]];
+        double value = 0;
+        for (int m = 0; m < 6; m++) {
+            value += fabs(part[m]) * most[m];
+            for (int d = 0; d < 3; d++) {
+                sight->X[m][d] += part[m] * X[d];
+                sight->normal[m][d] += part[m] * normal[d];
+            }
+        }
+        sight->tame = sight->tame && value < REF_SAMPLES_MOST_VALUE;
+    }
+}
+
+/* A sum at x, y from the sample, and its slopes there. */
+static void expand(const double sum[6][3], double x, double y, double at[3][3])
+{
+    const double none[2] = {0};
+    double times[6];
+    series(x, y, none, times);
+    for (int d = 0; d < 3; d++) {
+        at[0][d] = at[1][d] = at[2][d] = 0;
+        for (int m = 0; m < 6; m++) at[0][d] += times[m] * sum[m][d];
+        at[1][d] = sum[1][d] + x * sum[3][d] + y * sum[5][d];
+        at[2][d] = sum[2][d] + y * sum[4][d] + x * sum[5][d];
+    }
+}
+
+/* What weigh() finds, of a shell that has cracks: from sums over functions that all points share
+ * which are nearest to a sample. */
+static bool weigh_cracked(const void *data, long point, RefShape *shape, double *lift)
+{
+    const Feet *feet = data;
+    const double *theta = feet->theta[point];
+    Glass *glass = feet->glass;
+    look_at(feet->cracked, theta, glass);
+    const RefSamples *samples = &feet->cracked->cell[glass->cell].samples;
+    double edge[2], middle[2], at[2][3][3], o[3] = {0}, times[6];
+    for (int d = 0; d < 2; d++) {
+        edge[d] = glass->high[d] - glass->low[d];
+        middle[d] = (glass->low[d] + glass->high[d]) / 2;
+    }
+    int s = glass->whole ? ref_samples_nearest(middle, edge, theta)
+                         : ref_cracked_sample(feet->cracked, glass->cell, theta);
+    if (s < 0) return weigh(data, point, shape, lift);
+    double x = theta[0] - samples->theta[s][0], y = theta[1] - samples->theta[s][1];
+    Sight *sight = glass->sight + s;
+    if (!sight->summed) sum_sight(feet->warp, samples, s, edge, sight);
+    if (!sight->tame || !(fabs(x) < NEAR * edge[0] && fabs(y) < NEAR * edge[1]))
+        return weigh(data, point, shape, lift);
+    expand((const double(*)[3])sight->X, x, y, at[0]);
+    expand((const double(*)[3])sight->normal, x, y, at[1]);
+    offsets((const double(*)[3])at[0], (const double(*)[3])at[1], feet->x[point], edge, o);
+    *lift = o[2];
+    series(x, y, o, times);
+    long start = samples->start[s];
+    shape->count = (int)(samples->start[s + 1] - start);
+    for (int n = 0; n < shape->count; n++) {
+        const double *part = samples->part[start + n];
+        shape->node[n] = samples->node[start + n];
+        shape->value[n] = 0;
+        for (int m = 0; m < 6; m++) shape->value[n] += times[m] * part[m];
+    }
+    return shape->count > 0;
+}
+
 static bool is_stale(const void *data, long cell, int nodes, const int *node)
 {
     const Feet *feet = data;
@@ -140,8 +272,9 @@ static bool is_stale(const void *data, long cell, int nodes, const int *node)
 void ref_foot_renew(const RefCracked *cracked, const RefWarp *warp, const bool *leant,
                     const double (*theta)[2], const double (*x)[3], RefSkin *skin, long *loose)
 {
-    Feet feet = {cracked->shell, warp, theta, x, cracked, leant};
-    RefSkinCarrier carrier = {&feet, &cracked->shell->nodes, cell_of, weigh, nearest};
+    Glass glass = {.cell = -1};
+    Feet feet = {cracked->shell, warp, theta, x, cracked, leant, &glass};
+    RefSkinCarrier carrier = {&feet, &cracked->shell->nodes, cell_of, weigh_cracked, nearest};
     ref_skin_renew(&carrier, is_stale, skin, loose);
 }
 

@@ -5,11 +5,13 @@
 #include <string.h>
 
 #include "../../../lib/csr.h"
+#include "../../../lib/isa.h"
 #include "../body/covers.h"
 #include "../body/gauss_rule.h"
 
 static const double MOST_SLOPE = 6, MOST_SECOND = 50;
 enum { ORDER = 3, PARTS = 2, ALONG = ORDER * PARTS };
+_Static_assert((int)ALONG == (int)REF_GRID_SIDE && (int)ALONG == (int)REF_CELL_SIDE, "one grid");
 
 void ref_samples_free(RefSamples *samples)
 {
@@ -18,20 +20,29 @@ void ref_samples_free(RefSamples *samples)
     *samples = (RefSamples){0};
 }
 
-/* Appends a cell's points. */
-static void place(const RefQuadtree *tree, const RefCell *cell, RefSamples *samples)
+void ref_samples_grid(const RefQuadtree *tree, long cell, double at[2][REF_GRID_SIDE])
 {
-    double at[ORDER], weight[ORDER], middle[2], edge[2];
-    ref_gauss_rule(ORDER, at, weight);
-    ref_quadtree_cell(tree, cell, middle, edge);
+    double point[ORDER], weight[ORDER], middle[2], edge[2];
+    ref_gauss_rule(ORDER, point, weight);
+    ref_quadtree_cell(tree, tree->cell + cell, middle, edge);
+    for (int d = 0; d < 2; d++)
+        for (int i = 0; i < ALONG; i++)
+            at[d][i] = middle[d] + edge[d] * ((i / ORDER + 0.5 + point[i % ORDER]) / PARTS - 0.5);
+}
+
+/* Appends a cell's points. */
+static void place(const RefQuadtree *tree, long cell, RefSamples *samples)
+{
+    double point[ORDER], weight[ORDER], middle[2], edge[2], at[2][ALONG];
+    ref_gauss_rule(ORDER, point, weight);
+    ref_quadtree_cell(tree, tree->cell + cell, middle, edge);
+    ref_samples_grid(tree, cell, at);
     for (int n = 0; n < REF_SAMPLES_PER_CELL; n++, samples->count++) {
         int which[2] = {n % ALONG, n / ALONG};
         double area = edge[0] * edge[1] / (PARTS * PARTS);
         for (int d = 0; d < 2; d++) {
-            int part = which[d] / ORDER, point = which[d] % ORDER;
-            samples->theta[samples->count][d] =
-                middle[d] + edge[d] * ((part + 0.5 + at[point]) / PARTS - 0.5);
-            area *= weight[point];
+            samples->theta[samples->count][d] = at[d][which[d]];
+            area *= weight[which[d] % ORDER];
         }
         samples->weight[samples->count] = area;
     }
@@ -71,9 +82,6 @@ int ref_samples_shape(const RefNodes *nodes, RefBasis basis, double edge, const 
     return shape->count ? REF_MLS_PLANE_CONSTANT : 0;
 }
 
-/* Functions' values beyond this carry a place away with nodes far from it. */
-static const double MOST_VALUE = 2;
-
 void ref_samples_expand(const RefSamples *samples, long near, const double theta[2],
                         RefShape *shape)
 {
@@ -90,7 +98,7 @@ void ref_samples_expand(const RefSamples *samples, long near, const double theta
         shape->gradient[n][0] = p[1] + x * p[3] + y * p[5];
         shape->gradient[n][1] = p[2] + y * p[4] + x * p[5];
         for (int m = 0; m < 3; m++) shape->second[n][m] = p[3 + m];
-        far |= fabs(shape->value[n]) > MOST_VALUE;
+        far |= fabs(shape->value[n]) > REF_SAMPLES_MOST_VALUE;
     }
     if (!far) return;
     for (int n = 0; n < shape->count; n++) {
@@ -146,12 +154,129 @@ static RefSamples create(long points)
                         .start = sm_alloc(count + 1, sizeof(long))};
 }
 
-void ref_samples_of(const RefQuadtree *tree, long cell, const RefNodes *nodes, RefBasis basis,
-                    RefShape *shape, RefSamples *samples)
+RefSamplesWork ref_samples_work(const RefNodes *nodes)
 {
+    return (RefSamplesWork){.shape = ref_shape_create(nodes)};
+}
+
+void ref_samples_work_free(RefSamplesWork *work)
+{
+    ref_shape_free(&work->shape);
+    sm_free_all(work->node, work->member);
+    *work = (RefSamplesWork){.room = 0};
+}
+
+SM_ISA_TABLE(RefCellFunctions, ref_cell_functions)
+
+bool ref_samples_reached(const double at[2][REF_GRID_SIDE], const double node[2], double reach,
+                         int first[2], RefGrid *grid)
+{
+    for (int d = 0; d < 2; d++) {
+        int begin = 0, end = ALONG;
+        while (begin < ALONG && !(fabs(at[d][begin] - node[d]) / reach < REF_MLS_INSIDE)) begin++;
+        while (end > begin && !(fabs(at[d][end - 1] - node[d]) / reach < REF_MLS_INSIDE)) end--;
+        first[d] = begin;
+        grid->count[d] = end - begin;
+        grid->at[d] = at[d] + begin;
+    }
+    return grid->count[0] > 0 && grid->count[1] > 0;
+}
+
+/* The weights of one node at a cell's samples; false: none. */
+static bool weigh(const double at[2][ALONG], const double node[2], double reach,
+                  const RefCracks *cracks, RefCellNode *of)
+{
+    int first[2];
+    RefGrid grid;
+    double spline[2][3][ALONG] = {{{0}}}, part[REF_SAMPLES_PER_CELL][6];
+    if (!ref_samples_reached(at, node, reach, first, &grid)) return false;
+    for (int d = 0; d < 2; d++)
+        for (int i = first[d]; i < first[d] + grid.count[d]; i++) {
+            double slope[2];
+            spline[d][0][i] = ref_mls_spline((at[d][i] - node[d]) / reach, slope);
+            spline[d][1][i] = slope[0] / reach;
+            spline[d][2][i] = slope[1] / (reach * reach);
+        }
+    ref_cell_functions.weigh((const double(*)[3][ALONG])spline, of);
+    if (!ref_cracks_fan(cracks, &grid, node, reach, part)) return true;
+    bool any = false;
+    for (int n = 0; n < grid.count[0] * grid.count[1]; n++) {
+        int l = ALONG * (first[1] + n / grid.count[0]) + first[0] + n % grid.count[0];
+        double w[6];
+        for (int k = 0; k < 6; k++) w[k] = of->weight[k][l];
+        ref_mls_multiply(part[n], w);
+        for (int k = 0; k < 6; k++) of->weight[k][l] = w[0] > 0 ? w[k] : 0;
+        any |= w[0] > 0;
+    }
+    return any;
+}
+
+/* All nodes that a cell's samples see, rising; returns how many. */
+static int gather(const double at[2][ALONG], const RefNodes *nodes, double scale,
+                  const RefCracks *cracks, RefSamplesWork *work)
+{
+    int count = 0;
+    double low[2], high[2];
+    for (int d = 0; d < 2; d++) {
+        low[d] = at[d][0];
+        high[d] = at[d][ALONG - 1];
+    }
+    for (long n = 0; n < nodes->count + nodes->images; n++) {
+        const double *node = nodes->position[n], reach = nodes->reach[n];
+        if (!(node[0] - low[0] > -reach && node[0] - high[0] < reach && node[1] - low[1] > -reach &&
+              node[1] - high[1] < reach))
+            continue;
+        if (count == work->room) { /* zeroed: lanes that are no samples stay so */
+            long more = sm_room_for(count);
+            work->node = sm_widen(work->node, count, more, sizeof *work->node, 0);
+            work->member = sm_widen(work->member, count, more, sizeof *work->member, 0);
+            work->room = more;
+        }
+        RefCellNode *of = work->node + count;
+        if (!weigh(at, node, reach, cracks, of)) continue;
+        for (int l = 0; l < REF_SAMPLES_PER_CELL; l++) {
+            of->way[0][l] = (node[0] - at[0][l % ALONG]) / scale;
+            of->way[1][l] = (node[1] - at[1][l / ALONG]) / scale;
+        }
+        work->member[count++] = nodes->owner ? nodes->owner[n] : (int)n;
+    }
+    return count;
+}
+
+void ref_samples_of(const RefQuadtree *tree, long cell, const RefNodes *nodes, RefBasis basis,
+                    const RefCracks *cracks, RefSamplesWork *work, RefSamples *samples)
+{
+    double at[2][ALONG], low[2], high[2], edge = ref_quadtree_edge(tree, tree->cell + cell);
+    long end = 0, room[2] = {0};
+    RefCellFound found;
+    RefShape *shape = &work->shape;
     *samples = create(REF_SAMPLES_PER_CELL);
-    place(tree, tree->cell + cell, samples);
-    evaluate(nodes, basis, ref_quadtree_edge(tree, tree->cell + cell), shape, samples);
+    place(tree, cell, samples);
+    ref_samples_grid(tree, cell, at);
+    for (int d = 0; d < 2; d++) {
+        low[d] = at[d][0] - cracks->margin;
+        high[d] = at[d][ALONG - 1] + cracks->margin;
+    }
+    ref_cracks_look(cracks, low, high);
+    int count = gather((const double(*)[ALONG])at, nodes, edge, cracks, work);
+    ref_cell_functions.shape((int)basis, count, edge, work->node, &found);
+    for (int p = 0; p < REF_SAMPLES_PER_CELL; p++) {
+        bool defined = found.pivot[p] > REF_LEAST_PIVOT && found.most[0][p] * edge <= MOST_SLOPE &&
+                       found.most[1][p] * edge * edge <= MOST_SECOND;
+        if (!defined) ref_samples_shape(nodes, basis, edge, samples->theta[p], shape);
+        int most = defined ? count : shape->count;
+        sm_make_room(samples->node, room[0], end + most);
+        sm_make_room(samples->part, room[1], end + most);
+        for (int n = 0; n < most; n++) {
+            const RefCellNode *of = work->node + n;
+            if (defined && !(of->weight[0][p] > 0)) continue;
+            samples->node[end] = defined ? work->member[n] : shape->node[n];
+            for (int k = 0; defined && k < 6; k++) samples->part[end][k] = of->part[k][p];
+            if (!defined) ref_samples_part(shape, n, samples->part[end]);
+            end++;
+        }
+        samples->start[p + 1] = end;
+    }
 }
 
 SmCode ref_samples_take(const RefQuadtree *tree, RefNodes *nodes, RefBasis basis,
@@ -160,7 +285,7 @@ SmCode ref_samples_take(const RefQuadtree *tree, RefNodes *nodes, RefBasis basis
     long points = tree->leaves * REF_SAMPLES_PER_CELL;
     *samples = create(points);
     for (long c = 0; c < tree->count; c++)
-        if (tree->cell[c].child < 0) place(tree, tree->cell + c, samples);
+        if (tree->cell[c].child < 0) place(tree, c, samples);
     long bad = ref_mls_cover(nodes, basis, samples->count, (const double(*)[3])samples->theta);
     if (bad == 0) {
         RefShape shape = ref_shape_create(nodes);

@@ -5,6 +5,8 @@
 
 #include "../body/mls.h"
 #include "../body/pairs.h"
+#include "cell_functions.h"
+#include "crack.h"
 #include "quadtree.h"
 
 /* Three by three in each of four parts of a cell. */
@@ -21,16 +23,35 @@ typedef struct {
     double (*part)[6]; /* [start[count]] phi, phi,1, phi,2, phi,11, phi,22, phi,12 */
 } RefSamples;
 
+/* What ref_samples_of() works in. */
+typedef struct {
+    RefShape shape;
+    RefCellNode *node; /* [room] */
+    int *member;       /* [room] their numbers */
+    long room;
+} RefSamplesWork;
+
+RefSamplesWork ref_samples_work(const RefNodes *nodes);
+void ref_samples_work_free(RefSamplesWork *work);
+
 /* Takes the shape functions after covers were enlarged where they are not defined at a sample. The
  * caller frees. Errors: SM_INPUT, samples that stay uncovered. */
 SmCode ref_samples_take(const RefQuadtree *tree, RefNodes *nodes, RefBasis basis,
                         RefSamples *samples, SmError *error);
 void ref_samples_free(RefSamples *samples);
 
-/* The same of one terminal cell, with covers as they are. Where cracks leave a sample too few nodes
- * it has functions of a lower basis, and where they leave it no node, none. The caller frees. */
+/* The same of one terminal cell, with covers as they are, which these cracks cut. Where they leave
+ * a sample too few nodes it has functions of a lower basis, and where they leave it no node, none.
+ * `work` is the caller's, of ref_samples_work(). The caller frees. */
 void ref_samples_of(const RefQuadtree *tree, long cell, const RefNodes *nodes, RefBasis basis,
-                    RefShape *shape, RefSamples *samples);
+                    const RefCracks *cracks, RefSamplesWork *work, RefSamples *samples);
+
+/* The samples' coordinates along both axes of a cell. */
+void ref_samples_grid(const RefQuadtree *tree, long cell, double at[2][REF_GRID_SIDE]);
+
+/* Of these those that a node's cover reaches; false: none. */
+bool ref_samples_reached(const double at[2][REF_GRID_SIDE], const double node[2], double reach,
+                         int first[2], RefGrid *grid);
 
 /* The shape functions at a place of a cell whose edge is `edge`; between cracks of the first of a
  * quadratic, linear and constant basis that is defined there and varies no faster than the cell can
@@ -38,6 +59,9 @@ void ref_samples_of(const RefQuadtree *tree, long cell, const RefNodes *nodes, R
  * the basis, or 0 where no node is seen. */
 int ref_samples_shape(const RefNodes *nodes, RefBasis basis, double edge, const double x[3],
                       RefShape *shape);
+
+/* Functions' values beyond this carry a place away with nodes far from it. */
+#define REF_SAMPLES_MOST_VALUE 2.0
 
 /* The functions at a place from those at the sample `near` beside it: Taylor's to second order,
  * which reproduce all that the basis does; where one of them leaves -2..2, as between cracks, the
