@@ -21,15 +21,18 @@ void ref_field_value(const RefFieldPlace *place, double value[3])
         for (int d = 0; d < 3; d++) value[d] += place->part[n][0] * place->u[place->node[n]][d];
 }
 
+/* Strains are linear in the field's derivatives: of the sums of these once, not of each node's. */
 void ref_field_strains(const RefFieldPlace *place, const RefFrame *frame, double strain[6])
 {
-    double B[6][3];
+    double sum[3][6] = {{0}}, B[6][3];
+    for (int n = 0; n < place->count; n++)
+        for (int d = 0; d < 3; d++)
+            for (int m = 1; m < 6; m++)
+                sum[d][m] += place->part[n][m] * place->u[place->node[n]][d];
     memset(strain, 0, sizeof(double[6]));
-    for (int n = 0; n < place->count; n++) {
-        const double *u = place->u[place->node[n]];
-        ref_thin_strains(frame, place->part[n], B);
-        for (int i = 0; i < 6; i++)
-            for (int d = 0; d < 3; d++) strain[i] += B[i][d] * u[d];
+    for (int d = 0; d < 3; d++) {
+        ref_thin_strains(frame, sum[d], B);
+        for (int i = 0; i < 6; i++) strain[i] += B[i][d];
     }
 }
 
@@ -51,15 +54,20 @@ void ref_field_pull(const RefFieldPlace *place, const RefFrame *frame, double th
                     const RefMaterial *material, const double root[6], double area,
                     double (*force)[3])
 {
-    double stress[6] = {0}, B[6][3], G[3][3], weight[2];
+    double stress[6] = {0}, B[6][3], G[3][3], weight[2], pull[6][3] = {{0}};
     ref_thin_factor(frame->inverse, material->poisson, G);
     ref_thin_weights(1, thickness, material, weight);
     for (int i = 0; i < 6; i++)
         for (int j = i % 3; j < 3; j++)
             stress[i / 3 * 3 + j] += area * weight[i / 3] * G[i % 3][j] * root[i];
-    for (int n = 0; n < place->count; n++) {
-        ref_thin_strains(frame, place->part[n], B);
+    for (int m = 1; m < 6; m++) {
+        double one[6] = {0};
+        one[m] = 1;
+        ref_thin_strains(frame, one, B);
         for (int i = 0; i < 6; i++)
-            for (int d = 0; d < 3; d++) force[place->node[n]][d] += B[i][d] * stress[i];
+            for (int d = 0; d < 3; d++) pull[m][d] += B[i][d] * stress[i];
     }
+    for (int n = 0; n < place->count; n++)
+        for (int d = 0; d < 3; d++)
+            for (int m = 1; m < 6; m++) force[place->node[n]][d] += place->part[n][m] * pull[m][d];
 }

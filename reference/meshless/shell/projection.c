@@ -6,12 +6,13 @@
 /* Of the mass share that steps have; of the mass of a node. */
 static const double STIFF_SHARE = 1e-2, SMOOTH_SHARE = 1e-8;
 
-static SmCode project_displacements(const RefMatrices *matrices, double mass_share,
-                                    const double *residual, double *u, SmError *error)
+static SmCode project_displacements(const RefSteps *steps, const double *residual, double *u,
+                                    SmError *error)
 {
     RefSolver *solver;
-    int size = matrices->stiffness.columns;
-    SmCode code = ref_solver_create(matrices, -STIFF_SHARE * mass_share, NULL, &solver, error);
+    int size = steps->matrices->stiffness.columns;
+    double share = STIFF_SHARE * ref_steps_mass_share(&steps->damping, steps->h);
+    SmCode code = ref_solver_create_like(steps->solver, steps->matrices, -share, &solver, error);
     if (code != SM_OK) return code;
     double *change = sm_alloc((size_t)size, sizeof *change);
     ref_solver_solve(solver, residual, NULL, change);
@@ -31,9 +32,10 @@ static double smoothing(const RefSparse *M)
     return SMOOTH_SHARE * mass / M->columns;
 }
 
-static SmCode project_velocities(const RefSparse *M, const RefSparse *L, const double *residual,
+static SmCode project_velocities(const RefSparse *M, const RefWarp *warp, const double *residual,
                                  double *v, SmError *error)
 {
+    const RefSparse *L = &warp->laplacian.stiffness;
     size_t nodes = (size_t)M->columns, entries = (size_t)M->start[nodes];
     double share = smoothing(M), *column = sm_alloc(nodes, sizeof *column),
            *right = sm_alloc(3 * nodes, sizeof *right);
@@ -41,7 +43,7 @@ static SmCode project_velocities(const RefSparse *M, const RefSparse *L, const d
     RefSolver *solver;
     smooth.stiffness.value = sm_copy(M->value, entries, sizeof *M->value);
     for (size_t e = 0; e < entries; e++) smooth.stiffness.value[e] += share * L->value[e];
-    SmCode code = ref_solver_create(&smooth, 0, NULL, &solver, error);
+    SmCode code = ref_solver_create_like(warp->solver, &smooth, 0, &solver, error);
     ref_sparse_apply(L, 3, v, right);
     for (int d = 0; code == SM_OK && d < 3; d++) {
         for (size_t n = 0; n < nodes; n++)
@@ -54,11 +56,9 @@ static SmCode project_velocities(const RefSparse *M, const RefSparse *L, const d
     return code;
 }
 
-SmCode ref_project_fields(const RefMatrices *matrices, const RefWarp *warp, double mass_share,
-                          double *const residual[2], double *u, double *v, SmError *error)
+SmCode ref_project_fields(const RefSteps *steps, const RefWarp *warp, double *const residual[2],
+                          double *u, double *v, SmError *error)
 {
-    SmCode code =
-        project_velocities(&matrices->mass, &warp->laplacian.stiffness, residual[1], v, error);
-    return code == SM_OK ? project_displacements(matrices, mass_share, residual[0], u, error)
-                         : code;
+    SmCode code = project_velocities(&steps->matrices->mass, warp, residual[1], v, error);
+    return code == SM_OK ? project_displacements(steps, residual[0], u, error) : code;
 }

@@ -355,17 +355,16 @@ SmCode ref_sheet_hold(RefSheet *sheet, int grips, const RefSheetGrip *grip, SmEr
 SmCode ref_sheet_renew(RefSheet *sheet, double *u, double *v, const double *moved,
                        double *const residual[2], SmError *error)
 {
-    double share = ref_steps_mass_share(&sheet->options.damping, sheet->options.h);
     size_t size = 3 * (size_t)sheet->shell.nodes.count * sizeof(double);
     RefWarp warp;
-    RefSteps steps;
+    RefSteps steps = {.solver = NULL};
     SmCode code = ref_warp_create(&sheet->shell, &warp, error);
     if (code != SM_OK) return code;
-    code = ref_project_fields(&sheet->shell.matrices, &warp, share, residual, u, v, error);
-    if (code == SM_OK)
-        code = ref_steps_create(&sheet->shell.matrices, &sheet->options.damping, sheet->options.h,
-                                NULL, &steps, error);
+    code = ref_steps_create(&sheet->shell.matrices, &sheet->options.damping, sheet->options.h, NULL,
+                            &steps, error);
+    if (code == SM_OK) code = ref_project_fields(&steps, &warp, residual, u, v, error);
     if (code != SM_OK) {
+        ref_steps_free(&steps);
         ref_warp_free(&warp);
         return code;
     }

@@ -345,16 +345,20 @@ static void update(Sheet *sheet, double m, double **u, double **v)
 {
     double *field[2] = {*u, *v}, *residual[2] = {NULL, NULL};
     const RefCrackedFields fields = {.count = 2, .field = field, .residual = residual};
+    const RefDamping none = {0};
     RefWarp warp;
+    RefSteps steps;
     SmError error = {0};
     ref_cracked_update(&sheet->cracked, &fields);
     if (ref_warp_create(&sheet->shell, &warp, &error) != SM_OK ||
-        ref_project_fields(&sheet->shell.matrices, &warp, m, residual, field[0], field[1],
-                           &error) != SM_OK)
+        ref_steps_create(&sheet->shell.matrices, &none, sqrt(1 / m), NULL, &steps, &error) !=
+            SM_OK ||
+        ref_project_fields(&steps, &warp, residual, field[0], field[1], &error) != SM_OK)
         fail_msg("%s", error.text);
     *u = field[0];
     *v = field[1];
     ref_warp_free(&warp);
+    ref_steps_free(&steps);
     sm_free_all(residual[0], residual[1]);
 }
 

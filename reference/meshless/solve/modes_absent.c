@@ -20,6 +20,13 @@ SmCode ref_solver_create(const RefMatrices *matrices, double shift, const RefRow
     return absent(error);
 }
 
+SmCode ref_solver_create_like(const RefSolver *like, const RefMatrices *matrices, double shift,
+                              RefSolver **solver, SmError *error)
+{
+    (void)like;
+    return ref_solver_create(matrices, shift, NULL, solver, error);
+}
+
 void ref_solver_destroy(RefSolver *solver)
 {
     (void)solver;

@@ -1,5 +1,6 @@
 #include "solver.h"
 
+#include <assert.h>
 #include <cholmod.h>
 #include <math.h>
 #include <stdlib.h>
@@ -9,7 +10,7 @@ const bool ref_solver_built = true;
 
 struct RefSolver {
     cholmod_common common;
-    cholmod_factor *factor;
+    cholmod_factor *factor, *symbolic;     /* the second has an order and places of entries alone */
     cholmod_dense *result[2], *work[2][2]; /* of solves for one right side and for several */
     int size, rows, rank;
     RefRows A;
@@ -134,8 +135,59 @@ static void factorise(cholmod_sparse *matrix, RefSolver *solver)
     cholmod_factorize(matrix, solver->factor, &solver->common);
 }
 
-SmCode ref_solver_create(const RefMatrices *matrices, double shift, const RefRows *rows,
-                         RefSolver **result, SmError *error)
+/* An order of the parameters of three axes: that of their nodes, whose graph is a ninth of the
+ * entries. NULL where there is no memory. */
+static int *order_nodes(const RefSparse *M, cholmod_common *common)
+{
+    size_t nodes = (size_t)M->columns;
+    cholmod_sparse graph = {.nrow = nodes,
+                            .ncol = nodes,
+                            .nzmax = (size_t)M->start[nodes],
+                            .p = M->start,
+                            .i = M->row,
+                            .stype = -1,
+                            .itype = CHOLMOD_INT,
+                            .xtype = CHOLMOD_PATTERN,
+                            .sorted = 1,
+                            .packed = 1};
+    int *order = sm_alloc(3 * nodes, sizeof *order);
+    if (!cholmod_amd(&graph, NULL, 0, order, common)) {
+        free(order);
+        return NULL;
+    }
+    for (size_t n = 3 * nodes; n-- > 0;) order[n] = 3 * order[n / 3] + (int)(n % 3);
+    return order;
+}
+
+/* The order and the places of a factor's entries: of nodes' matrices for all three axes from the
+ * nodes alone, of others as CHOLMOD finds best. */
+static cholmod_factor *analyse(cholmod_sparse *matrix, const RefSparse *M, cholmod_common *common)
+{
+    if (3 * (size_t)M->columns != matrix->ncol) return cholmod_analyze(matrix, common);
+    int *order = order_nodes(M, common);
+    if (!order) return NULL;
+    common->nmethods = 1;
+    common->method[0].ordering = CHOLMOD_GIVEN;
+    cholmod_factor *symbolic = cholmod_analyze_p(matrix, order, NULL, 0, common);
+    free(order);
+    return symbolic;
+}
+
+static SmCode say_failure(int status, int columns, SmError *error)
+{
+    if (status == CHOLMOD_OUT_OF_MEMORY || status == CHOLMOD_TOO_LARGE)
+        return sm_fail(error, SM_INPUT,
+                       "a stiffness of %d columns is too large to be factorised: give the body "
+                       "fewer nodes",
+                       columns);
+    return sm_fail(error, SM_INPUT,
+                   "the stiffness matrix is singular: the body is not held, or parts of it hang "
+                   "together by too few nodes; hold it, or give it more nodes");
+}
+
+/* In the order of another one, if there is one. */
+static SmCode create(const RefSolver *like, const RefMatrices *matrices, double shift,
+                     const RefRows *rows, RefSolver **result, SmError *error)
 {
     RefSolver *solver = sm_alloc(1, sizeof *solver);
     cholmod_common *common = &solver->common;
@@ -146,7 +198,10 @@ SmCode ref_solver_create(const RefMatrices *matrices, double shift, const RefRow
     solver->rows = (int)solver->A.count;
     cholmod_sparse *matrix = shifted(matrices, shift, common);
     if (matrix && solver->rows) matrix = held(matrix, matrices, &solver->A, common);
-    if (matrix) solver->factor = cholmod_analyze(matrix, common);
+    if (matrix)
+        solver->symbolic = like ? cholmod_copy_factor(like->symbolic, common)
+                                : analyse(matrix, &matrices->mass, common);
+    if (solver->symbolic) solver->factor = cholmod_copy_factor(solver->symbolic, common);
     if (solver->factor) factorise(matrix, solver);
     cholmod_free_sparse(&matrix, common);
     int status = common->status;
@@ -157,20 +212,27 @@ SmCode ref_solver_create(const RefMatrices *matrices, double shift, const RefRow
         return SM_OK;
     }
     ref_solver_destroy(solver);
-    if (status == CHOLMOD_OUT_OF_MEMORY || status == CHOLMOD_TOO_LARGE)
-        return sm_fail(error, SM_INPUT,
-                       "a stiffness of %d columns is too large to be factorised: give the body "
-                       "fewer nodes",
-                       matrices->stiffness.columns);
-    return sm_fail(error, SM_INPUT,
-                   "the stiffness matrix is singular: the body is not held, or parts of it hang "
-                   "together by too few nodes; hold it, or give it more nodes");
+    return say_failure(status, matrices->stiffness.columns, error);
+}
+
+SmCode ref_solver_create(const RefMatrices *matrices, double shift, const RefRows *rows,
+                         RefSolver **solver, SmError *error)
+{
+    return create(NULL, matrices, shift, rows, solver, error);
+}
+
+SmCode ref_solver_create_like(const RefSolver *like, const RefMatrices *matrices, double shift,
+                              RefSolver **solver, SmError *error)
+{
+    assert(like->size == matrices->stiffness.columns && !like->rows);
+    return create(like, matrices, shift, NULL, solver, error);
 }
 
 void ref_solver_destroy(RefSolver *solver)
 {
     if (!solver) return;
     cholmod_free_factor(&solver->factor, &solver->common);
+    cholmod_free_factor(&solver->symbolic, &solver->common);
     for (int of = 0; of < 2; of++) {
         cholmod_free_dense(&solver->result[of], &solver->common);
         for (int k = 0; k < 2; k++) cholmod_free_dense(&solver->work[of][k], &solver->common);

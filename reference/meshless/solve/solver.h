@@ -17,6 +17,11 @@ extern const bool ref_solver_built;
  * its arguments. Errors (SM_INPUT): the matrix is singular. */
 SmCode ref_solver_create(const RefMatrices *matrices, double shift, const RefRows *rows,
                          RefSolver **solver, SmError *error);
+
+/* The same without rows, of a matrix whose entries are where those are of `like`, which has no rows
+ * either: in its order, which takes no time to be found. */
+SmCode ref_solver_create_like(const RefSolver *like, const RefMatrices *matrices, double shift,
+                              RefSolver **solver, SmError *error);
 void ref_solver_destroy(RefSolver *solver);
 
 /* x: (K - shift M) x = b - A^T multipliers, A x = target. `b` and `target` may be NULL: zero. */
