@@ -97,9 +97,35 @@ static void place(const RefSkin *skin, const RefSkinBlock *block, const double (
     }
 }
 
+static void weigh(const RefSkinShare *share, const int *column, float *row)
+{
+    enum { AT_ONCE = REF_SKIN_SHARED };
+    for (int first = 0; first < share->points; first += AT_ONCE)
+        for (int n = 0; n < share->nodes; n++) {
+            const double *part = share->part[n];
+            float *to = row + column[n] + first;
+            for (int p = 0; p < AT_ONCE; p++) {
+                double sum = 0;
+                for (int m = 0; m < 6; m++) sum += share->times[m][first + p] * part[m];
+                to[p] += (float)sum;
+            }
+        }
+}
+
 /* Slopes side by side, anywhere where doubles may be. */
 typedef double Slopes
     __attribute__((vector_size(REF_FRAME_SLOPES * sizeof(double)), aligned(sizeof(double))));
+
+static void parts(int count, const int *node, const double (*part)[6],
+                  const double (*field)[REF_FRAME_SLOPES], double sum[6][REF_FRAME_SLOPES])
+{
+    Slopes at[6] = {{0}};
+    for (int n = 0; n < count; n++) {
+        const Slopes *here = (const Slopes *)field[node[n]];
+        for (int m = 0; m < 6; m++) at[m] += *here * part[n][m];
+    }
+    for (int m = 0; m < 6; m++) *(Slopes *)sum[m] = at[m];
+}
 
 static void slopes(int count, const int *node, const double (*slope)[REF_FRAME_SLOPES],
                    const double (*u)[3], double sum[3][REF_FRAME_SLOPES])
@@ -157,4 +183,5 @@ static void square(int rows, int columns, const double *row, double *sum)
             square_tile(rows, columns, row + i, row + j, sum + i * columns + j);
 }
 
-const RefFrameSums SM_ISA_NAME(ref_frame_sums) = {apply, add, place, slopes, spread, square};
+const RefFrameSums SM_ISA_NAME(ref_frame_sums) = {apply, add,    place,  weigh,
+                                                  parts, slopes, spread, square};

@@ -1,6 +1,6 @@
 /* frame_sums.h - the sums that a frame consists of (meshless section 5.3), of the instruction set
  * in use (lib/isa.h): they stream the modes' rows and the skin's weights, which are all that a
- * frame reads; and, of a shell that breaks, the squares that its elements are. */
+ * frame reads; and, of a shell that breaks, the squares that its elements are, and the weights. */
 #ifndef REF_FRAME_SUMS_H
 #define REF_FRAME_SUMS_H
 
@@ -18,6 +18,14 @@ typedef struct {
     /* ref_skin_place() of one block. */
     void (*place)(const RefSkin *skin, const RefSkinBlock *block, const double (*moved)[3],
                   const double (*turned)[3], double (*position)[3]);
+
+    /* Adds the weights that points share to rows that begin at column[n] of `row`, a whole number
+     * of REF_SKIN_SHARED of them: times are zero of points that are none. */
+    void (*weigh)(const RefSkinShare *share, const int *column, float *row);
+
+    /* sum[m][l] = sum over the functions of part[n][m] field[node[n]][l], of eight fields. */
+    void (*parts)(int count, const int *node, const double (*part)[6],
+                  const double (*field)[REF_FRAME_SLOPES], double sum[6][REF_FRAME_SLOPES]);
 
     /* sum[d][j] = sum over the nodes of slope[n][j] u[node[n]][d]; and what that is the transpose
      * of, of eight fields: to[node[n]][l] += sum over j of slope[n][j] gain[j][l]. */

@@ -8,7 +8,7 @@
 #include "../body/covers.h"
 #include "frame_sums.h"
 
-enum { BLOCK = 64, LANES = REF_SKIN_LANES };
+enum { BLOCK = REF_SKIN_BLOCK, LANES = REF_SKIN_LANES };
 
 /* Works on one block at a time. */
 typedef struct {
@@ -18,6 +18,8 @@ typedef struct {
     int *list;   /* [BLOCK functions] the block's nodes, and */
     float *row;  /* [like list][BLOCK] their weights at its points */
     float lift[BLOCK];
+    RefSkinShare share;
+    int *column; /* [functions] of the nodes of a share */
     long loose;
 } Builder;
 
@@ -28,7 +30,8 @@ static Builder builder_of(const RefSkinCarrier *carrier)
                        .shape = ref_shape_create(carrier->nodes),
                        .number = sm_alloc((size_t)carrier->nodes->count, sizeof(int)),
                        .list = sm_alloc(most, sizeof(int)),
-                       .row = sm_alloc(most, BLOCK * sizeof(float))};
+                       .row = sm_alloc(most + 1, BLOCK * sizeof(float)),
+                       .column = sm_alloc((size_t)carrier->nodes->most, sizeof(int))};
     for (long n = 0; n < carrier->nodes->count; n++) builder.number[n] = -1;
     return builder;
 }
@@ -36,30 +39,45 @@ static Builder builder_of(const RefSkinCarrier *carrier)
 static void builder_free(Builder *builder)
 {
     ref_shape_free(&builder->shape);
-    sm_free_all(builder->number, builder->list, builder->row);
+    sm_free_all(builder->number, builder->list, builder->row, builder->column);
 }
 
 typedef struct {
     long cell, point;
+    int place;
 } Keyed;
 
 static int by_cell(const void *a, const void *b)
 {
     const Keyed *p = a, *q = b;
     if (p->cell != q->cell) return p->cell < q->cell ? -1 : 1;
+    if (p->place != q->place) return p->place < q->place ? -1 : 1;
     return (p->point > q->point) - (p->point < q->point);
 }
 
 static Keyed *sort_points(const RefSkinCarrier *carrier, long count)
 {
     Keyed *key = sm_alloc((size_t)count, sizeof *key);
-    for (long p = 0; p < count; p++) key[p] = (Keyed){carrier->cell(carrier->data, p), p};
+    for (long p = 0; p < count; p++)
+        key[p] = (Keyed){carrier->cell(carrier->data, p), p,
+                         carrier->place ? carrier->place(carrier->data, p) : 0};
     qsort(key, (size_t)count, sizeof *key, by_cell);
     return key;
 }
 
-/* The weights at point p of a block, or the nearest node alone: in the rows of nodes, which the
- * block's list has in the order in which they come. */
+/* The number of a node in the block's list, to which it is added. */
+static int column_of(Builder *builder, RefSkinBlock *block, int node)
+{
+    int *number = builder->number + node;
+    if (*number < 0) {
+        *number = block->nodes++;
+        builder->list[*number] = node;
+        memset(builder->row + *number * BLOCK, 0, BLOCK * sizeof *builder->row);
+    }
+    return *number;
+}
+
+/* The weights at point p of a block, or the nearest node alone. */
 static void evaluate(Builder *builder, RefSkinBlock *block, int p, long point)
 {
     const RefSkinCarrier *carrier = builder->carrier;
@@ -72,15 +90,26 @@ static void evaluate(Builder *builder, RefSkinBlock *block, int p, long point)
         builder->shape.value[0] = 1;
     }
     builder->lift[p] = (float)lift;
-    for (int n = 0; n < shape->count; n++) {
-        int *number = builder->number + shape->node[n];
-        if (*number < 0) {
-            *number = block->nodes++;
-            builder->list[*number] = shape->node[n];
-            memset(builder->row + *number * BLOCK, 0, BLOCK * sizeof *builder->row);
-        }
-        builder->row[*number * BLOCK + p] += (float)shape->value[n];
-    }
+    for (int n = 0; n < shape->count; n++)
+        builder->row[column_of(builder, block, shape->node[n]) * BLOCK + p] +=
+            (float)shape->value[n];
+}
+
+/* The weights of the points from p on that share parts; returns how many these are. */
+static int evaluate_shared(Builder *builder, RefSkinBlock *block, int p, const long *point)
+{
+    const RefSkinCarrier *carrier = builder->carrier;
+    RefSkinShare *share = &builder->share;
+    share->points = 0;
+    if (carrier->share) carrier->share(carrier->data, block->points - p, point, share);
+    if (share->points == 0) return 0;
+    for (int m = 0; m < 6; m++) /* whole vectors: what follows gets nothing */
+        for (int k = share->points; k % REF_SKIN_SHARED; k++) share->times[m][k] = 0;
+    for (int n = 0; n < share->nodes; n++)
+        builder->column[n] = column_of(builder, block, share->node[n]) * BLOCK;
+    ref_frame_sums.weigh(share, builder->column, builder->row + p);
+    for (int k = 0; k < share->points; k++) builder->lift[p + k] = (float)share->lift[k];
+    return share->points;
 }
 
 /* Behind all others, with some room for more: a block that changes is likely to change again. */
@@ -111,8 +140,13 @@ static void weigh_block(Builder *builder, RefSkin *skin, RefSkinBlock *block)
 {
     long before = builder->loose -= block->loose;
     block->nodes = 0;
-    for (int p = 0; p < block->points; p++)
-        evaluate(builder, block, p, skin->order[block->first + p]);
+    for (int p = 0, shared; p < block->points; p += shared) {
+        const long *point = skin->order + block->first + p;
+        shared = evaluate_shared(builder, block, p, point);
+        if (shared) continue;
+        evaluate(builder, block, p, *point);
+        shared = 1;
+    }
     block->loose = (int)(builder->loose - before);
     if (block->nodes > block->slots) make_slots(skin, block);
     fill_weights(builder, skin, block);
@@ -231,7 +265,8 @@ void ref_skin_create(const RefBody *body, long count, const double (*x)[3], RefS
                      long *loose)
 {
     InBody in = {body, x};
-    RefSkinCarrier carrier = {&in, &body->nodes, octant_of, weigh_in_body, nearest_in_body};
+    RefSkinCarrier carrier = {&in,  &body->nodes, octant_of, weigh_in_body, nearest_in_body,
+                              NULL, NULL};
     ref_skin_build(&carrier, false, count, x, skin, loose);
 }
 

@@ -8,7 +8,11 @@
 
 #include "../body/body.h"
 
-enum { REF_SKIN_LANES = 16 }; /* points that are placed at once */
+enum {
+    REF_SKIN_LANES = 16, /* points that are placed at once */
+    REF_SKIN_BLOCK = 64, /* points of a block at most */
+    REF_SKIN_SHARED = 8  /* points that are weighed at once */
+};
 
 typedef struct {
     int points, room;         /* room: points rounded up to whole vectors */
@@ -31,6 +35,16 @@ typedef struct {
     float (*near)[3]; /* scratch: displacements of a block's nodes, and how their normals turn */
 } RefSkin;
 
+/* Weights of points one after the other which are sums of the same parts: at point p, node n has
+ * the sum over m of times[m][p] part[n][m]. */
+typedef struct {
+    int points, nodes;
+    const int *node;
+    const double (*part)[6];
+    double times[6][REF_SKIN_BLOCK];
+    double lift[REF_SKIN_BLOCK];
+} RefSkinShare;
+
 /* What carries points: their cells, and the weights of the nodes that move each of them; false
  * where there are too few. */
 typedef struct {
@@ -39,6 +53,11 @@ typedef struct {
     long (*cell)(const void *data, long point);
     bool (*weigh)(const void *data, long point, RefShape *shape, double *lift);
     int (*nearest)(const void *data, long point); /* the node that moves a point then */
+    /* May be NULL, as may be the next: where in its cell a point is, by which points are sorted
+     * that share parts. */
+    int (*place)(const void *data, long point);
+    /* The weights of the first points of some; of none, if they are none of shared parts. */
+    void (*share)(const void *data, int count, const long *point, RefSkinShare *share);
 } RefSkinCarrier;
 
 /* `lifted`: points of a shell. */

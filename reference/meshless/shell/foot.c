@@ -1,26 +1,26 @@
 #include "foot.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "../../../lib/vector.h"
 
 enum { MOST_STEPS = 12 };
 
+/* A node's place at rest and its normal, and nothing. */
+enum { FIELDS = REF_FRAME_SLOPES, PLACE = 0, NORMAL = 3 };
+
 /* What a sample of a cracked shell says of all that is nearest to it: the sums of places and of
  * normals with its functions' parts. */
 typedef struct {
-    bool summed, tame; /* tame: ref_samples_expand() takes nothing back there */
-    double X[6][3], normal[6][3];
-} Sight;
-
-/* The samples of the terminal cell that points were in last. */
-typedef struct {
-    long cell; /* -1: none */
-    double low[2], high[2];
+    long cell; /* terminal; -1: none */
+    double low[2], edge[2];
     bool whole; /* no crack touches it */
-    Sight sight[REF_SAMPLES_PER_CELL];
-} Glass;
+    int sample; /* of the cell; -1: none */
+    bool tame;  /* ref_samples_expand() takes nothing back there */
+    double sum[6][FIELDS];
+} Sight;
 
 typedef struct {
     const RefShell *shell;
@@ -29,7 +29,8 @@ typedef struct {
     const double (*x)[3];
     const RefCracked *cracked;
     const bool *leant;
-    Glass *glass;
+    Sight *sight;
+    double (*field)[FIELDS]; /* [nodes] */
 } Feet;
 
 static long cell_of(const void *data, long point)
@@ -106,8 +107,8 @@ static void find_foot(const double place[3][3], const double normal[3][3], const
     double far = beyond(first, edge, height);
     for (int k = 0; k < 3 && far > 1; k++) first[k] /= far;
     memcpy(o, first, sizeof first);
-    for (int n = 0; n < MOST_STEPS && off > 1e-12 * height && beyond(o, edge, height) <= 1; n++)
-        off = step(place, normal, x, o);
+    for (int n = 0; n < MOST_STEPS && off > 1e-7 * height && beyond(o, edge, height) <= 1; n++)
+        off = step(place, normal, x, o); /* the last one squares it */
     if (!(off < 1e-6 * height && beyond(o, edge, height) <= 1)) memcpy(o, first, sizeof first);
 }
 
@@ -151,24 +152,24 @@ static bool weigh(const void *data, long point, RefShape *shape, double *lift)
     return ref_foot_at(feet->shell, feet->warp, feet->theta[point], feet->x[point], shape, lift);
 }
 
-/* Points go on in the same cell mostly. */
-static void look_at(const RefCracked *cracked, const double theta[2], Glass *glass)
+/* The terminal cell at a place: points go on in the same one mostly. */
+static void look_at(const RefCracked *cracked, const double theta[2], Sight *sight)
 {
     const RefQuadtree *tree = &cracked->shell->tree;
-    bool inside = glass->cell >= 0;
+    bool inside = sight->cell >= 0;
     for (int d = 0; d < 2; d++)
-        inside = inside && theta[d] > glass->low[d] && theta[d] < glass->high[d];
-    long cell = inside ? glass->cell : ref_quadtree_at(tree, theta);
-    if (cell == glass->cell) return;
-    double middle[2], edge[2];
-    glass->cell = cell;
-    ref_quadtree_cell(tree, tree->cell + cell, middle, edge);
+        inside = inside && theta[d] > sight->low[d] && theta[d] < sight->low[d] + sight->edge[d];
+    long cell = inside ? sight->cell : ref_quadtree_at(tree, theta);
+    if (cell == sight->cell) return;
+    double middle[2], high[2];
+    sight->cell = cell;
+    sight->sample = -1;
+    ref_quadtree_cell(tree, tree->cell + cell, middle, sight->edge);
     for (int d = 0; d < 2; d++) {
-        glass->low[d] = middle[d] - edge[d] / 2;
-        glass->high[d] = middle[d] + edge[d] / 2;
+        sight->low[d] = middle[d] - sight->edge[d] / 2;
+        high[d] = middle[d] + sight->edge[d] / 2;
     }
-    glass->whole = !ref_cracks_look(&cracked->cracks, glass->low, glass->high);
-    for (int s = 0; s < REF_SAMPLES_PER_CELL; s++) glass->sight[s].summed = false;
+    sight->whole = !ref_cracks_look(&cracked->cracks, sight->low, high);
 }
 
 /* A tenth of an edge, beyond which another sample is nearer. */
@@ -186,78 +187,91 @@ static void series(double x, double y, const double o[2], double times[6])
     times[5] = x * y + o[0] * y + o[1] * x;
 }
 
-static void sum_sight(const RefWarp *warp, const RefSamples *samples, int s, const double edge[2],
-                      Sight *sight)
+static void sum_sight(const Feet *feet, const RefSamples *samples, int s, Sight *sight)
 {
     const double none[2] = {0};
+    const long start = samples->start[s], end = samples->start[s + 1];
     double most[6];
-    *sight = (Sight){.summed = true, .tame = true};
-    series(NEAR * edge[0], NEAR * edge[1], none, most);
-    for (long e = samples->start[s]; e < samples->start[s + 1]; e++) {
-        const double *part = samples->part[e], *X = warp->X[samples->node[e]];
-        const double *normal = warp->rest_normal[samples->node[e]];
+    sight->sample = s;
+    sight->tame = true;
+    series(NEAR * sight->edge[0], NEAR * sight->edge[1], none, most);
+    for (long e = start; e < end; e++) {
         double value = 0;
-        for (int m = 0; m < 6; m++) {
-            value += fabs(part[m]) * most[m];
-            for (int d = 0; d < 3; d++) {
-                sight->X[m][d] += part[m] * X[d];
-                sight->normal[m][d] += part[m] * normal[d];
-            }
-        }
+        for (int m = 0; m < 6; m++) value += fabs(samples->part[e][m]) * most[m];
         sight->tame = sight->tame && value < REF_SAMPLES_MOST_VALUE;
     }
+    ref_frame_sums.parts((int)(end - start), samples->node + start,
+                         (const double(*)[6])(samples->part + start),
+                         (const double(*)[FIELDS])feet->field, sight->sum);
 }
 
-/* A sum at x, y from the sample, and its slopes there. */
-static void expand(const double sum[6][3], double x, double y, double at[3][3])
+/* A field at x, y from the sample, and its slopes there. */
+static void expand(const double sum[6][FIELDS], int field, double x, double y, double at[3][3])
 {
     const double none[2] = {0};
     double times[6];
     series(x, y, none, times);
     for (int d = 0; d < 3; d++) {
-        at[0][d] = at[1][d] = at[2][d] = 0;
-        for (int m = 0; m < 6; m++) at[0][d] += times[m] * sum[m][d];
-        at[1][d] = sum[1][d] + x * sum[3][d] + y * sum[5][d];
-        at[2][d] = sum[2][d] + y * sum[4][d] + x * sum[5][d];
+        int f = field + d;
+        at[0][d] = 0;
+        for (int m = 0; m < 6; m++) at[0][d] += times[m] * sum[m][f];
+        at[1][d] = sum[1][f] + x * sum[3][f] + y * sum[5][f];
+        at[2][d] = sum[2][f] + y * sum[4][f] + x * sum[5][f];
     }
 }
 
-/* What weigh() finds, of a shell that has cracks: from sums over functions that all points share
- * which are nearest to a sample. */
-static bool weigh_cracked(const void *data, long point, RefShape *shape, double *lift)
+/* The sample whose functions are those of a place, or -1. */
+static int sample_at(const RefCracked *cracked, const double theta[2], Sight *sight)
+{
+    double middle[2];
+    look_at(cracked, theta, sight);
+    for (int d = 0; d < 2; d++) middle[d] = sight->low[d] + sight->edge[d] / 2;
+    return sight->whole ? ref_samples_nearest(middle, sight->edge, theta)
+                        : ref_cracked_sample(cracked, sight->cell, theta);
+}
+
+/* What weigh() finds, of the first points that are nearest to the same sample of a shell that
+ * cracks: from sums over its functions. */
+static void share(const void *data, int count, const long *point, RefSkinShare *share)
 {
     const Feet *feet = data;
-    const double *theta = feet->theta[point];
-    Glass *glass = feet->glass;
-    look_at(feet->cracked, theta, glass);
-    const RefSamples *samples = &feet->cracked->cell[glass->cell].samples;
-    double edge[2], middle[2], at[2][3][3], o[3] = {0}, times[6];
-    for (int d = 0; d < 2; d++) {
-        edge[d] = glass->high[d] - glass->low[d];
-        middle[d] = (glass->low[d] + glass->high[d]) / 2;
+    Sight *sight = feet->sight;
+    int first = sample_at(feet->cracked, feet->theta[*point], sight);
+    long cell = sight->cell;
+    const RefSamples *samples = &feet->cracked->cell[cell].samples;
+    share->points = 0;
+    if (first < 0 || samples->start[first] == samples->start[first + 1]) return;
+    if (sight->sample != first) sum_sight(feet, samples, first, sight);
+    if (!sight->tame) return;
+    share->nodes = (int)(samples->start[first + 1] - samples->start[first]);
+    share->node = samples->node + samples->start[first];
+    share->part = (const double(*)[6])(samples->part + samples->start[first]);
+    for (int p = 0; p < count; p++) {
+        const double *theta = feet->theta[point[p]];
+        double at[2][3][3], o[3] = {0}, times[6];
+        if (p > 0 && (sample_at(feet->cracked, theta, sight) != first || sight->cell != cell))
+            return;
+        double x = theta[0] - samples->theta[first][0], y = theta[1] - samples->theta[first][1];
+        if (!(fabs(x) < NEAR * sight->edge[0] && fabs(y) < NEAR * sight->edge[1])) return;
+        expand((const double(*)[FIELDS])sight->sum, PLACE, x, y, at[0]);
+        expand((const double(*)[FIELDS])sight->sum, NORMAL, x, y, at[1]);
+        offsets((const double(*)[3])at[0], (const double(*)[3])at[1], feet->x[point[p]],
+                sight->edge, o);
+        series(x, y, o, times);
+        for (int m = 0; m < 6; m++) share->times[m][p] = times[m];
+        share->lift[p] = o[2];
+        share->points++;
     }
-    int s = glass->whole ? ref_samples_nearest(middle, edge, theta)
-                         : ref_cracked_sample(feet->cracked, glass->cell, theta);
-    if (s < 0) return weigh(data, point, shape, lift);
-    double x = theta[0] - samples->theta[s][0], y = theta[1] - samples->theta[s][1];
-    Sight *sight = glass->sight + s;
-    if (!sight->summed) sum_sight(feet->warp, samples, s, edge, sight);
-    if (!sight->tame || !(fabs(x) < NEAR * edge[0] && fabs(y) < NEAR * edge[1]))
-        return weigh(data, point, shape, lift);
-    expand((const double(*)[3])sight->X, x, y, at[0]);
-    expand((const double(*)[3])sight->normal, x, y, at[1]);
-    offsets((const double(*)[3])at[0], (const double(*)[3])at[1], feet->x[point], edge, o);
-    *lift = o[2];
-    series(x, y, o, times);
-    long start = samples->start[s];
-    shape->count = (int)(samples->start[s + 1] - start);
-    for (int n = 0; n < shape->count; n++) {
-        const double *part = samples->part[start + n];
-        shape->node[n] = samples->node[start + n];
-        shape->value[n] = 0;
-        for (int m = 0; m < 6; m++) shape->value[n] += times[m] * part[m];
-    }
-    return shape->count > 0;
+}
+
+/* The sample that is nearest. */
+static int place_of(const void *data, long point)
+{
+    const Feet *feet = data;
+    const RefQuadtree *tree = &feet->shell->tree;
+    double middle[2], edge[2];
+    ref_quadtree_cell(tree, tree->cell + ref_quadtree_at(tree, feet->theta[point]), middle, edge);
+    return ref_samples_nearest(middle, edge, feet->theta[point]);
 }
 
 static bool is_stale(const void *data, long cell, int nodes, const int *node)
@@ -272,16 +286,23 @@ static bool is_stale(const void *data, long cell, int nodes, const int *node)
 void ref_foot_renew(const RefCracked *cracked, const RefWarp *warp, const bool *leant,
                     const double (*theta)[2], const double (*x)[3], RefSkin *skin, long *loose)
 {
-    Glass glass = {.cell = -1};
-    Feet feet = {cracked->shell, warp, theta, x, cracked, leant, &glass};
-    RefSkinCarrier carrier = {&feet, &cracked->shell->nodes, cell_of, weigh_cracked, nearest};
+    Sight sight = {.cell = -1};
+    double(*field)[FIELDS] = sm_alloc((size_t)warp->nodes, sizeof *field);
+    Feet feet = {cracked->shell, warp, theta, x, cracked, leant, &sight, field};
+    for (long n = 0; n < warp->nodes; n++) {
+        memcpy(field[n] + PLACE, warp->X[n], sizeof warp->X[n]);
+        memcpy(field[n] + NORMAL, warp->rest_normal[n], sizeof warp->rest_normal[n]);
+    }
+    RefSkinCarrier carrier = {&feet, &cracked->shell->nodes, cell_of, weigh, nearest, place_of,
+                              share};
     ref_skin_renew(&carrier, is_stale, skin, loose);
+    free(field);
 }
 
 void ref_foot_skin(const RefShell *shell, const RefWarp *warp, long count, const double (*theta)[2],
                    const double (*x)[3], RefSkin *skin, long *loose)
 {
     Feet feet = {.shell = shell, .warp = warp, .theta = theta, .x = x};
-    RefSkinCarrier carrier = {&feet, &shell->nodes, cell_of, weigh, nearest};
+    RefSkinCarrier carrier = {&feet, &shell->nodes, cell_of, weigh, nearest, place_of, NULL};
     ref_skin_build(&carrier, true, count, x, skin, loose);
 }
