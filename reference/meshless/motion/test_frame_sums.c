@@ -93,3 +93,60 @@ TEST(points_are_placed)
             }
     }
 }
+
+/* Of any number of points, from any row on; nothing is added to other points'. */
+TEST(shared_weights_are_sums_of_parts)
+{
+    enum { NODES = 9, ROOM = REF_SKIN_BLOCK };
+    unsigned seed = 4;
+    for (int trial = 0; trial < TRIALS; trial++) {
+        static double part[NODES][6];
+        static float row[NODES + 1][ROOM];
+        static RefSkinShare share;
+        int column[NODES], first = random_int(&seed, ROOM);
+        share = (RefSkinShare){.points = 1 + random_int(&seed, ROOM - first),
+                               .nodes = 1 + random_int(&seed, NODES),
+                               .part = (const double(*)[6])part};
+        for (int m = 0; m < 6; m++) {
+            for (int p = 0; p < share.points; p++) share.times[m][p] = random_between(&seed, -1, 1);
+            for (int n = 0; n < NODES; n++) part[n][m] = random_between(&seed, -1, 1);
+        }
+        for (int n = 0; n <= NODES; n++)
+            for (int p = 0; p < ROOM; p++) row[n][p] = 1;
+        for (int n = 0; n < share.nodes; n++) column[n] = (n + trial) % share.nodes * ROOM;
+        ref_frame_sums.weigh(&share, column, row[0] + first);
+        for (int n = 0; n <= NODES; n++)
+            for (int p = 0; p < ROOM; p++) {
+                double wanted = 1;
+                bool in = n < share.nodes && p >= first && p < first + share.points;
+                for (int m = 0; in && m < 6; m++)
+                    for (int of = 0; of < share.nodes; of++)
+                        if (column[of] == n * ROOM)
+                            wanted += share.times[m][p - first] * part[of][m];
+                assert_true(fabs(row[n][p] - wanted) < (in ? 1e-6 : 0) + 1e-300);
+            }
+    }
+}
+
+TEST(fields_are_summed_with_parts)
+{
+    enum { NODES = 12, FIELDS = REF_FRAME_SLOPES };
+    unsigned seed = 5;
+    for (int trial = 0; trial < TRIALS; trial++) {
+        static double part[NODES][6], field[NODES][FIELDS], sum[6][FIELDS];
+        int node[NODES], count = random_int(&seed, NODES + 1);
+        for (int n = 0; n < NODES; n++) {
+            node[n] = random_int(&seed, NODES);
+            for (int m = 0; m < 6; m++) part[n][m] = random_between(&seed, -1, 1);
+            for (int f = 0; f < FIELDS; f++) field[n][f] = random_between(&seed, -1, 1);
+        }
+        ref_frame_sums.parts(count, node, (const double(*)[6])part, (const double(*)[FIELDS])field,
+                             sum);
+        for (int m = 0; m < 6; m++)
+            for (int f = 0; f < FIELDS; f++) {
+                double wanted = 0;
+                for (int n = 0; n < count; n++) wanted += part[n][m] * field[node[n]][f];
+                assert_true(fabs(sum[m][f] - wanted) < 1e-13);
+            }
+    }
+}

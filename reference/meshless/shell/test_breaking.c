@@ -138,6 +138,28 @@ TEST(what_cannot_be_followed_has_not_happened)
     for (int k = 0; k < 2; k++) strip_free(strip + k);
 }
 
+/* How far points are from where functions carry them that are taken at each alone. */
+static double off_alone(const Strip *strip, const RefSkin *skin, const double (*theta)[2],
+                        const double (*now)[3])
+{
+    const RefSheet *sheet = &strip->sheet;
+    RefShape shape = ref_shape_create(&sheet->shell.nodes);
+    double most = 0, lift;
+    for (long s = 0; s < skin->count; s++) {
+        assert_true(ref_foot_at(&sheet->shell, &sheet->warp, theta[skin->order[s]], skin->rest[s],
+                                &shape, &lift));
+        for (int d = 0; d < 3; d++) {
+            double at = skin->rest[s][d];
+            for (int n = 0; n < shape.count; n++)
+                at += shape.value[n] * (sheet->warp.moved[shape.node[n]][d] +
+                                        lift * sheet->warp.turned[shape.node[n]][d]);
+            most = fmax(most, fabs(now[s][d] - at));
+        }
+    }
+    ref_shape_free(&shape);
+    return most;
+}
+
 /* Points beside a strip that a crack goes into are carried by what it has made of the functions and
  * normals there: they turn with a strip that turns. */
 TEST(points_are_carried_after_cracks)
@@ -182,6 +204,8 @@ TEST(points_are_carried_after_cracks)
         for (int d = 0; d < 3; d++)
             most = fmax(most, fabs(now[s][d] - sm_dot(R + 3 * d, skin.rest[s]) - shift[d]));
     assert_true(most < 1e-5);
+    assert_true(off_alone(&strip, &skin, (const double(*)[2])theta, (const double(*)[3])now) <
+                1e-5);
     ref_skin_free(&skin);
     strip_free(&strip);
 }

@@ -550,3 +550,112 @@ TEST(the_chart_serves_where_the_whole_shell_has_no_functions)
     }
     sheet_free(&sheet);
 }
+
+/* A sheet after some growth, which is updated or not. */
+static void cracked_sheet(bool wraps, Sheet *sheet)
+{
+    random_sheet(wraps, 0.7, sheet);
+    double step = half_cell(&sheet->chart);
+    for (int n = 0; n < 6; n++) {
+        random_growth(&sheet->cracked.cracks, step);
+        if (n % 2 == 0) random_start(&sheet->cracked.cracks, step);
+        if (n < 5) ref_cracked_update(&sheet->cracked, NULL);
+    }
+}
+
+/* A sample's functions, of all that a cell has at once, beside those of the place alone; returns by
+ * how much they differ at most where both see the same nodes, and more than that where not. */
+static double off_at(const Sheet *sheet, long c, long p, RefShape *shape)
+{
+    const RefShell *shell = &sheet->shell;
+    const RefSamples *samples = &sheet->cracked.cell[c].samples;
+    double edge = ref_quadtree_edge(&shell->tree, shell->tree.cell + c), most = 0;
+    long start = samples->start[p];
+    ref_samples_shape(&shell->nodes, shell->basis, edge, samples->theta[p], shape);
+    if (samples->start[p + 1] - start != shape->count) return 1;
+    for (int n = 0; n < shape->count; n++) {
+        const double scale[6] = {1, edge, edge, edge * edge, edge * edge, edge * edge};
+        double part[6];
+        ref_samples_part(shape, n, part);
+        if (samples->node[start + n] != shape->node[n]) return 1;
+        for (int m = 0; m < 6; m++)
+            most = fmax(most, scale[m] * fabs(samples->part[start + n][m] - part[m]));
+    }
+    return most;
+}
+
+TEST(functions_of_a_cell_are_those_of_its_samples)
+{
+    needs_solver();
+    for (int trial = 0; trial < 4; trial++) {
+        Sheet sheet;
+        double most = 0;
+        cracked_sheet(trial % 2, &sheet);
+        ref_cracked_update(&sheet.cracked, NULL);
+        RefShape shape = ref_shape_create(&sheet.shell.nodes);
+        for (long c = 0; c < sheet.shell.tree.count; c++)
+            for (long p = 0; p < sheet.cracked.cell[c].samples.count; p++)
+                most = fmax(most, off_at(&sheet, c, p, &shape));
+        print_message("%g off\n", most);
+        assert_true(most < 1e-8);
+        ref_shape_free(&shape);
+        sheet_free(&sheet);
+    }
+}
+
+/* A grid of places in and about a cell, and a place that it is seen from. */
+static RefGrid random_grid(const RefChart *chart, double step, double at[2][REF_GRID_SIDE],
+                           double from[2])
+{
+    RefGrid grid;
+    for (int d = 0; d < 2; d++) {
+        double corner = random_between(&seed, chart->low[d], chart->high[d]);
+        from[d] = corner + random_between(&seed, -5, 5) * step;
+        grid.count[d] = 1 + random_int(&seed, REF_GRID_SIDE);
+        grid.at[d] = at[d];
+        for (int i = 0; i < REF_GRID_SIDE; i++) {
+            at[d][i] = corner;
+            corner += random_between(&seed, 0.1, 0.5) * step;
+        }
+    }
+    return grid;
+}
+
+/* Ways to a grid beside one way after the other, among pieces that were looked up for both. */
+TEST(ways_to_a_grid_are_ways_to_its_places)
+{
+    needs_solver();
+    enum { GRIDS = 3000 };
+    long cut[3] = {0}, changes = 0, kept = 0;
+    for (int trial = 0; trial < 2; trial++) {
+        Sheet sheet;
+        cracked_sheet(trial, &sheet);
+        const RefCracks *cracks = &sheet.cracked.cracks;
+        double step = half_cell(&sheet.chart), reach = 5 * step;
+        for (int n = 0; n < GRIDS; n++) {
+            double at[2][REF_GRID_SIDE], from[3] = {0}, part[REF_GRID_SIDE * REF_GRID_SIDE][6];
+            RefGrid grid = random_grid(&sheet.chart, step, at, from);
+            bool some = ref_cracks_fan(cracks, &grid, from, reach, part), differs = false;
+            bool changed = ref_cracks_fan_changed(cracks, &grid, from, reach);
+            for (int p = 0; p < grid.count[0] * grid.count[1]; p++) {
+                const double x[3] = {at[0][p % grid.count[0]], at[1][p / grid.count[0]]};
+                double now[6] = {0}, before[6] = {0};
+                bool seen = ref_cracks_pass(cracks, x, from, reach, now);
+                bool was = ref_cracks_passed(cracks, x, from, reach, before);
+                const double whole[6] = {1}, *got = some ? part[p] : whole;
+                if (!seen) memset(now, 0, sizeof now);
+                if (!was) memset(before, 0, sizeof before);
+                for (int m = 0; m < 6; m++) assert_true(got[m] == now[m]);
+                for (int m = 0; m < 6; m++) differs |= now[m] != before[m];
+                cut[now[0] == 0 ? 0 : now[0] < 1 ? 1 : 2]++;
+            }
+            assert_true(changed || !differs);
+            changes += differs;
+            kept += !changed && some;
+        }
+        sheet_free(&sheet);
+    }
+    print_message("%ld ways cut, %ld in part, %ld not; %ld grids changed, %ld cut ones did not\n",
+                  cut[0], cut[1], cut[2], changes, kept);
+    assert_true(cut[0] > 1000 && cut[1] > 100 && cut[2] > 1000 && changes > 100 && kept > 100);
+}
