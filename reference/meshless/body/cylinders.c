@@ -9,7 +9,7 @@
 
 /* How near to a zero lines are that it dims, in the node's reach. */
 static const double ZERO_REACH = 0.25;
-/* Of a reach, within which a line's end is the node. */
+/* Of a reach, or a width, within which a line's end is the place that it is to lead to. */
 static const double SAME = 1e-6;
 enum { MOST_JOINTS_PASSED = 1000, MOST_ZEROS = 16 };
 
@@ -126,15 +126,37 @@ bool ref_cylinders_walk(const RefCylinders *cylinders, double theta[2], const do
     return left[1] == 0;
 }
 
+bool ref_cylinders_hop(const RefCylinders *cylinders, double theta[2], double way[2],
+                       double moved[2])
+{
+    return hop(cylinders, ref_cylinders_at(cylinders, theta), theta, way, moved) >= 0;
+}
+
+/* Whether a place is another one, of a rectangle or some widths beside. */
+static bool is_same(const RefCylinders *cylinders, const double theta[2], int in,
+                    const double other[2], double off)
+{
+    double along = theta[0] - other[0], width = width_of(cylinders->cylinder + in);
+    along -= width * rint(along / width);
+    return ref_cylinders_at(cylinders, theta) == in && fabs(along) < off &&
+           fabs(theta[1] - other[1]) < off;
+}
+
+bool ref_cylinders_lead(const RefCylinders *cylinders, const double theta[2], const double way[2],
+                        int in, const double to[2])
+{
+    double end[2] = {theta[0], theta[1]};
+    return ref_cylinders_walk(cylinders, end, way) &&
+           is_same(cylinders, end, in, to, SAME * width_of(cylinders->cylinder + in));
+}
+
 /* ---- images */
 
-/* A cylinder's rectangle that lines from a place reach, in the plane that goes on straight from
- * there: the place is at `from` in the cylinder's own plane, and lines come between two
- * directions. */
+/* A cylinder's rectangle that lines from a place's box reach, in the plane that goes on straight
+ * from there: the place is at `from` in the cylinder's own plane. */
 typedef struct {
-    int at;
-    double from[2], right[2], left[2];
-    bool all; /* all directions: it is the place's own */
+    int at, way; /* 1: it was reached upwards, -1: downwards, 0: it is the place's own */
+    double from[2];
 } Sight;
 
 typedef struct {
@@ -144,36 +166,29 @@ typedef struct {
     Sight *sight; /* what is looked at, one after the other */
 } Look;
 
-static double cross(const double a[2], const double b[2])
+static bool is_seen(const Look *look, int at, const double from[2])
 {
-    return a[0] * b[1] - a[1] * b[0];
+    double tiny = 1e-9 * width_of(look->cylinders->cylinder + at);
+    for (long n = 0; n < look->count; n++)
+        if (look->sight[n].at == at && fabs(look->sight[n].from[0] - from[0]) < tiny &&
+            fabs(look->sight[n].from[1] - from[1]) < tiny)
+            return true;
+    return false;
 }
 
-/* Goes on from a rectangle across a piece of its side along axis `axis`, seen from the place, to
+/* Goes on from a rectangle across a piece of its side along axis `axis`, if that is in the box, to
  * where the place is at `there` in the plane of `to`. */
 static void look_through(Look *look, const Sight *sight, int axis, double side, double begin,
-                         double end, int to, const double there[2])
+                         double end, int to, int way, const double there[2])
 {
-    double away = side - sight->from[!axis], ends[2][2];
+    double away = side - sight->from[!axis];
     begin = fmax(begin - sight->from[axis], look->low[axis]);
     end = fmin(end - sight->from[axis], look->high[axis]);
     double tiny = 1e-9 * (look->high[axis] - look->low[axis]);
     if (end - begin <= tiny || away <= look->low[!axis] || away >= look->high[!axis]) return;
-    bool left_first = (away > 0) == (axis == 0); /* of both ends, as seen from the place */
-    for (int e = 0; e < 2; e++) {
-        ends[e][axis] = e ? end : begin;
-        ends[e][!axis] = away;
-    }
-    const double *left = ends[left_first ? 0 : 1], *right = ends[left_first ? 1 : 0];
-    if (!sight->all && cross(sight->right, right) < 0) right = sight->right;
-    if (!sight->all && cross(sight->left, left) > 0) left = sight->left;
-    double width = cross(right, left);
-    if (width <= 1e-12 * hypot(right[0], right[1]) * hypot(left[0], left[1])) return;
-    Sight next = {.at = to, .from = {there[0], there[1]}};
-    memcpy(next.right, right, sizeof next.right);
-    memcpy(next.left, left, sizeof next.left);
+    if (is_seen(look, to, there)) return;
     sm_make_room(look->sight, look->room, look->count + 1);
-    look->sight[look->count++] = next;
+    look->sight[look->count++] = (Sight){.at = to, .way = way, .from = {there[0], there[1]}};
 }
 
 /* Across an interval of a side, of which the piece that is in the rectangle begins `around`
@@ -186,29 +201,27 @@ static void look_across(Look *look, const Sight *sight, const RefJoint *joint, d
     double end = fmin(joint->end + around, from->high[0]);
     double width = width_of(next), on = joint->shift[0] - around;
     double side = joint->up ? from->high[1] : from->low[1];
-    bool out = joint->up ? side > sight->from[1] : side < sight->from[1];
-    if (!out || end <= begin) return;
+    int way = joint->up ? 1 : -1;
+    if (sight->way == -way || end <= begin) return;
     for (double k = floor((begin + on - next->low[0]) / width); next->low[0] + k * width < end + on;
          k++) {
         double first = next->low[0] + k * width - on; /* of the width, seen from here */
         const double there[2] = {sight->from[0] + on - k * width, sight->from[1] + joint->shift[1]};
         look_through(look, sight, 0, side, fmax(begin, first), fmin(end, first + width), joint->to,
-                     there);
+                     way, there);
     }
 }
 
-/* Goes on from a rectangle to those beside, and notes whether a zero of it is near. */
+/* Goes on from a rectangle to those beside, and returns whether a zero of it is near. */
 static bool look_around(Look *look, const Sight *sight)
 {
     const RefCylinder *cylinder = look->cylinders->cylinder + sight->at;
     double width = width_of(cylinder), by = look->enlarged;
     bool near = false;
     for (int k = -1; k <= 1; k += 2) {
-        double side = k > 0 ? cylinder->high[0] : cylinder->low[0];
         const double there[2] = {sight->from[0] - k * width, sight->from[1]};
-        if (k * (side - sight->from[0]) > 0)
-            look_through(look, sight, 1, side, cylinder->low[1], cylinder->high[1], sight->at,
-                         there);
+        look_through(look, sight, 1, k > 0 ? cylinder->high[0] : cylinder->low[0], cylinder->low[1],
+                     cylinder->high[1], sight->at, sight->way, there);
     }
     for (int j = 0; j < look->cylinders->joints; j++) {
         const RefJoint *joint = look->cylinders->joint + j;
@@ -224,21 +237,6 @@ static bool look_around(Look *look, const Sight *sight)
     return near;
 }
 
-static void add_image(RefCylinderImages *images, int to, const double shift[2], double tiny)
-{
-    for (int n = 0; n < images->count; n++)
-        if (images->to[n] == to && fabs(images->shift[n][0] - shift[0]) < tiny &&
-            fabs(images->shift[n][1] - shift[1]) < tiny)
-            return;
-    if (images->count == images->room) {
-        images->room = 2 * images->room + 16;
-        images->to = sm_realloc(images->to, (size_t)images->room, sizeof *images->to);
-        images->shift = sm_realloc(images->shift, (size_t)images->room, sizeof *images->shift);
-    }
-    images->to[images->count] = to;
-    memcpy(images->shift[images->count++], shift, 2 * sizeof *shift);
-}
-
 void ref_cylinders_images(const RefCylinders *cylinders, const double theta[2], const double low[2],
                           const double high[2], double enlarged, RefCylinderImages *images)
 {
@@ -246,15 +244,21 @@ void ref_cylinders_images(const RefCylinders *cylinders, const double theta[2], 
     memcpy(look.low, low, sizeof look.low);
     memcpy(look.high, high, sizeof look.high);
     sm_make_room(look.sight, look.room, 1);
-    look.sight[0] = (Sight){
-        .at = ref_cylinders_at(cylinders, theta), .from = {theta[0], theta[1]}, .all = true};
-    images->count = 0;
+    look.sight[0] = (Sight){.at = ref_cylinders_at(cylinders, theta), .from = {theta[0], theta[1]}};
     images->zero = false;
     for (long n = 0; n < look.count; n++) {
-        const Sight sight = look.sight[n];
-        const double shift[2] = {sight.from[0] - theta[0], sight.from[1] - theta[1]};
-        add_image(images, sight.at, shift, 1e-9 * width_of(cylinders->cylinder + sight.at));
+        const Sight sight = look.sight[n]; /* as these move */
         images->zero |= look_around(&look, &sight);
+    }
+    images->count = (int)look.count;
+    if (images->count > images->room) {
+        images->room = 2 * images->count;
+        images->to = sm_realloc(images->to, (size_t)images->room, sizeof *images->to);
+        images->shift = sm_realloc(images->shift, (size_t)images->room, sizeof *images->shift);
+    }
+    for (long n = 0; n < look.count; n++) {
+        images->to[n] = look.sight[n].at;
+        for (int d = 0; d < 2; d++) images->shift[n][d] = look.sight[n].from[d] - theta[d];
     }
     free(look.sight);
 }
@@ -357,10 +361,9 @@ bool ref_cylinders_pass(const RefCylinders *cylinders, const double x[2], const 
     Line line = {.x = {x[0], x[1]}, .from = {from[0], from[1]}};
     double theta[2] = {x[0], x[1]}, way[2] = {from[0] - x[0], from[1] - x[1]}, moved[2];
     memcpy(part, whole, sizeof whole);
-    int at = ref_cylinders_at(cylinders, x), end = at;
+    int at = ref_cylinders_at(cylinders, x);
     for (int n = 0; n < MOST_JOINTS_PASSED && at >= 0; n++) {
         pass_cylinder(cylinders, at, ZERO_REACH * reach, &line, part);
-        end = at;
         at = hop(cylinders, at, theta, way, moved);
         for (int d = 0; d < 2; d++) {
             line.x[d] += moved[d];
@@ -368,8 +371,6 @@ bool ref_cylinders_pass(const RefCylinders *cylinders, const double x[2], const 
             line.away[d] += moved[d];
         }
     }
-    double off = fabs(theta[0] - node[0]), width = width_of(cylinders->cylinder + end);
-    off = fmin(off, fabs(off - width));
-    return part[0] > 0 && end == ref_cylinders_at(cylinders, node) && off < SAME * reach &&
-           fabs(theta[1] - node[1]) < SAME * reach;
+    return part[0] > 0 &&
+           is_same(cylinders, theta, ref_cylinders_at(cylinders, node), node, SAME * reach);
 }

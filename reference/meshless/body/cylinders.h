@@ -44,8 +44,20 @@ bool ref_cylinders_zero(const RefCylinders *cylinders, const double low[2], cons
  * a rim. O(joints passed). */
 bool ref_cylinders_walk(const RefCylinders *cylinders, double theta[2], const double way[2]);
 
-/* Where straight lines from a place of a rectangle lead to in a box around it: shifts by which the
- * place gets into the planes of cylinders there, the first one zero. */
+/* The same up to the next joint, which is true: theta becomes the place behind that. False where
+ * none is met. `way` becomes what is left: nothing, but of one that meets a rim. `moved` receives
+ * by how much the plane behind is off, theta less where the way itself leads to. */
+bool ref_cylinders_hop(const RefCylinders *cylinders, double theta[2], double way[2],
+                       double moved[2]);
+
+/* Whether a way ends at `to`, a place of the cylinder `in`, or some widths beside it. */
+bool ref_cylinders_lead(const RefCylinders *cylinders, const double theta[2], const double way[2],
+                        int in, const double to[2]);
+
+/* Where straight lines from a place of a rectangle, and from places beside it in that, lead to in a
+ * box around it: shifts by which the place gets into the planes of cylinders there, the first one
+ * zero. Those whose second part is zero are of the place's own cylinder, some widths beside. Behind
+ * zeros there may be some that no line leads to. */
 typedef struct {
     int count, room, *to;
     double (*shift)[2];

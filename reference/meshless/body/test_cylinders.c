@@ -5,68 +5,17 @@
 #include "../shell/quadtree.h"
 #include "../shell/test_charts.h"
 #include "mls.h"
+#include "test_trousers.h"
 
 static unsigned seed = 5;
-
-/* Genus 2: two narrow cylinders stand side by side on a wide one, which stands on them, turned by
- * `twist`. What the third is cut open along is moved by `cut` of the widths. */
-typedef struct {
-    RefCylinder cylinder[3];
-    RefJoint joint[8];
-    RefCylinders all;
-} Trousers;
-
-static const double widths[3] = {5, 2, 3}, heights[3] = {2, 1, 1.5};
-
-static double wrapped(double at, double width)
-{
-    return at - width * floor(at / width);
-}
-
-/* Both sides of an interval, of which the upper side of `under` has the beginning at `from`, and
- * the lower side of `over` at `to`, as places of cylinders that are not cut elsewhere. */
-static void join(Trousers *t, int under, double from, int over, double to, double length,
-                 const double cut[3])
-{
-    const RefCylinder *low = t->cylinder + under, *high = t->cylinder + over;
-    double begin = low->low[0] + wrapped(from - cut[under], widths[under]);
-    double there = high->low[0] + wrapped(to - cut[over], widths[over]);
-    double up = high->low[1] - low->high[1];
-    t->joint[t->all.joints++] =
-        (RefJoint){under, over, true, begin, begin + length, {there - begin, up}};
-    t->joint[t->all.joints++] =
-        (RefJoint){over, under, false, there, there + length, {begin - there, -up}};
-}
-
-static void make(double twist, const double cut[3], Trousers *t)
-{
-    double at = 0;
-    *t = (Trousers){.all = {.count = 3}};
-    t->all.cylinder = t->cylinder;
-    t->all.joint = t->joint;
-    for (int c = 0; c < 3; c++) {
-        t->cylinder[c] = (RefCylinder){{at, 0}, {at + widths[c], heights[c]}};
-        at += widths[c] + 1;
-    }
-    join(t, 0, 0.5, 1, 0, 2, cut);
-    join(t, 0, 2.5, 2, 0, 3, cut);
-    join(t, 1, 0.75, 0, twist, 2, cut);
-    join(t, 2, 1.25, 0, twist + 2, 3, cut);
-}
-
-static void random_place(const Trousers *t, double theta[2])
-{
-    const RefCylinder *in = t->cylinder + random_int(&seed, 3);
-    for (int d = 0; d < 2; d++) theta[d] = random_between(&seed, in->low[d], in->high[d]);
-}
 
 TEST(lines_lead_back)
 {
     Trousers t;
-    make(1.3, (double[3]){0, 0, 0}, &t);
+    make_trousers(1.3, (double[3]){0, 0, 0}, &t);
     for (int n = 0; n < 1000; n++) {
         double from[2], to[2], way[2], back[2];
-        random_place(&t, from);
+        random_place(&seed, &t, from);
         for (int d = 0; d < 2; d++) {
             way[d] = random_between(&seed, -9, 9);
             back[d] = -way[d];
@@ -85,7 +34,7 @@ TEST(lines_lead_back)
 TEST(a_zero_has_two_turns)
 {
     Trousers t;
-    make(1.3, (double[3]){0, 0, 0}, &t);
+    make_trousers(1.3, (double[3]){0, 0, 0}, &t);
     static const double way[4][2] = {{0.2, 0}, {0, 0.2}, {-0.2, 0}, {0, -0.2}};
     for (int zero = 0; zero < 2; zero++) {
         double from[2] = {zero ? 0.4 : 1.4, heights[0] - 0.1}, at[2] = {from[0], from[1]};
@@ -103,11 +52,11 @@ TEST(images_are_where_lines_lead)
 {
     Trousers t;
     RefCylinderImages images = {.count = 0};
-    make(1.3, (double[3]){0, 0, 0}, &t);
+    make_trousers(1.3, (double[3]){0, 0, 0}, &t);
     const double reach = 0.8, low[2] = {-reach, -reach}, high[2] = {reach, reach};
     for (int n = 0; n < 300; n++) {
         double node[2];
-        random_place(&t, node);
+        random_place(&seed, &t, node);
         ref_cylinders_images(&t.all, node, low, high, reach / 4, &images);
         assert_true(images.shift[0][0] == 0 && images.shift[0][1] == 0);
         for (int k = 0; k < 100; k++) {
@@ -134,7 +83,7 @@ TEST(images_are_where_lines_lead)
 TEST(what_passes_has_its_slopes)
 {
     Trousers t;
-    make(1.3, (double[3]){0, 0, 0}, &t);
+    make_trousers(1.3, (double[3]){0, 0, 0}, &t);
     const double node[2] = {0.45, heights[0] - 0.3}, reach = 1, step = 1e-6;
     int seen = 0, jumps = 0;
     for (int n = 0; n < 2000; n++) {
@@ -159,42 +108,12 @@ TEST(what_passes_has_its_slopes)
     assert_true(seen > 300 && jumps < 10);
 }
 
-static double factor_one(const void *data, const double theta[2])
-{
-    (void)data, (void)theta;
-    return 1;
-}
-
-/* L grows towards a zero as it does on surfaces: 1 / sqrt(distance), here of all of them. */
-static double factor_of_zeros(const void *data, const double theta[2])
-{
-    const Trousers *t = data;
-    double least = 1;
-    int at = ref_cylinders_at(&t->all, theta);
-    for (int j = 0; j < t->all.joints; j++) {
-        const RefJoint *joint = t->joint + j;
-        double side = joint->up ? t->cylinder[at].high[1] : 0;
-        if (joint->from != at) continue;
-        for (int k = -1; k <= 1; k++)
-            least = fmin(least, hypot(theta[0] - joint->begin - k * widths[at], theta[1] - side));
-    }
-    return 1 / sqrt(fmax(least, 1e-3));
-}
-
-static RefChart chart_of(const Trousers *t, bool grows)
-{
-    return (RefChart){.high = {t->cylinder[2].high[0], heights[0]},
-                      .factor = grows ? factor_of_zeros : factor_one,
-                      .data = t,
-                      .cylinders = &t->all};
-}
-
 /* Cells of neighbours across joints are at most twice as long. */
 TEST(cells_are_balanced_across_joints)
 {
     Trousers t;
-    make(1.3, (double[3]){0, 0, 0}, &t);
-    RefChart chart = chart_of(&t, true);
+    make_trousers(1.3, (double[3]){0, 0, 0}, &t);
+    RefChart chart = chart_of_trousers(&t, true);
     RefQuadtree tree = quadtree_of(&chart, 1, 800);
     assert_true(tree.leaves > 500 && tree.leaves < 1200);
     double area = 0;
@@ -226,7 +145,7 @@ TEST(cells_are_balanced_across_joints)
 /* A place of which half are near zeros. */
 static void place_near_zero(const Trousers *t, bool near, double x[3])
 {
-    random_place(t, x);
+    random_place(&seed, t, x);
     x[2] = 0;
     if (!near) return;
     const RefJoint *joint = t->joint + random_int(&seed, t->all.joints);
@@ -270,8 +189,8 @@ static int add_terms(const Trousers *t, const RefNodes *nodes, const double x[3]
 /* Quadratic functions of 700 cells; the chart must not move. */
 static RefShape make_shapes(Trousers *t, RefChart *chart, RefQuadtree *tree, RefNodes *nodes)
 {
-    make(1.3, (double[3]){0, 0, 0}, t);
-    *chart = chart_of(t, true);
+    make_trousers(1.3, (double[3]){0, 0, 0}, t);
+    *chart = chart_of_trousers(t, true);
     *tree = quadtree_of(chart, 1, 700);
     ref_quadtree_nodes(tree, 6, nodes);
     return ref_shape_create(nodes);
@@ -331,16 +250,6 @@ TEST(functions_do_not_leap_behind_a_zero)
     ref_quadtree_free(&tree);
 }
 
-/* Where a place is when cylinders are cut open elsewhere. */
-static void move_place(const Trousers *t, const double cut[3], const double from[2], double to[3])
-{
-    int c = ref_cylinders_at(&t->all, from);
-    double low = t->cylinder[c].low[0];
-    to[0] = low + wrapped(from[0] - low - cut[c], widths[c]);
-    to[1] = from[1];
-    to[2] = 0;
-}
-
 /* Which of the others each node is. */
 static int *twins_of(const Trousers *t, const double cut[3], const RefNodes *nodes,
                      const RefNodes *others)
@@ -363,12 +272,12 @@ TEST(moving_the_cuts_changes_nothing)
 {
     Trousers t, moved;
     double cut[3] = {0, 0, 0};
-    make(1.3, cut, &t);
-    RefChart chart = chart_of(&t, false);
+    make_trousers(1.3, cut, &t);
+    RefChart chart = chart_of_trousers(&t, false);
     RefQuadtree tree = quadtree_of(&chart, 3, 600);
     for (int c = 0; c < 3; c++) cut[c] = (c + 1) * widths[c] / tree.grid[c].roots[0];
-    make(1.3, cut, &moved);
-    RefChart other_chart = chart_of(&moved, false);
+    make_trousers(1.3, cut, &moved);
+    RefChart other_chart = chart_of_trousers(&moved, false);
     RefQuadtree other = quadtree_of(&other_chart, 3, 600);
     RefNodes nodes, others;
     ref_quadtree_nodes(&tree, 6, &nodes);
