@@ -91,7 +91,9 @@ static double step(const double place[3][3], const double normal[3][3], const do
     return sqrt(sm_dot(off, off));
 }
 
-/* How far o leads out of the reach: of a cell's edges along the parameters, and of `height` up. */
+/* How far o leads out of the reach: of a cell's edges along the parameters, and of `height` up.
+ * What was shortened to 1 is within, however that was rounded. */
+static const double WITHIN = 1 + 1e-9;
 static double beyond(const double o[3], const double edge[2], double height)
 {
     return fmax(fmax(fabs(o[0]) / edge[0], fabs(o[1]) / edge[1]), fabs(o[2]) / height);
@@ -107,9 +109,9 @@ static void find_foot(const double place[3][3], const double normal[3][3], const
     double far = beyond(first, edge, height);
     for (int k = 0; k < 3 && far > 1; k++) first[k] /= far;
     memcpy(o, first, sizeof first);
-    for (int n = 0; n < MOST_STEPS && off > 1e-7 * height && beyond(o, edge, height) <= 1; n++)
+    for (int n = 0; n < MOST_STEPS && off > 1e-7 * height && beyond(o, edge, height) <= WITHIN; n++)
         off = step(place, normal, x, o); /* the last one squares it */
-    if (!(off < 1e-6 * height && beyond(o, edge, height) <= 1)) memcpy(o, first, sizeof first);
+    if (!(off < 1e-6 * height && beyond(o, edge, height) <= WITHIN)) memcpy(o, first, sizeof first);
 }
 
 /* The offsets of x in a cell, from place and normal there; false where functions are constant. */
