@@ -87,11 +87,6 @@ static SmCode make_breaking(const RefMeshlessOptions *options, SmEngine *engine,
     engine->pressure = options->pressure;
     engine->pulse = options->pulse;
     if (!(options->strength > 0)) return SM_OK;
-    if (engine->body.map.chart.cylinders)
-        return sm_fail(
-            error, SM_INPUT,
-            "strength: a surface with two handles or two holes does not crack yet; leave "
-            "strength out, or cut it open");
     engine->body.breaking = sm_alloc(1, sizeof *engine->body.breaking);
     return ref_breaking_create(&engine->body.sheet, &cracked, &fracture, engine->body.breaking,
                                error);

@@ -675,8 +675,7 @@ static bool simplify(RefSurfaceMap *map)
     double shortest, longest;
     rims_of(surface, &shortest, &longest);
     if (!needs_cylinders(surface)) return false;
-    bool cut =
-        cut_handle(surface, largest_hole, shortest * sqrt(ref_triangulation_area(surface)));
+    bool cut = cut_handle(surface, largest_hole, shortest * sqrt(ref_triangulation_area(surface)));
     map->handles += cut;
     if (cut || shortest > largest_hole) return cut;
     map->closed += ref_triangulation_close(surface, shortest * (1 + 1e-9), 0, 0);

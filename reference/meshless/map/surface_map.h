@@ -56,15 +56,15 @@ typedef struct {
  * area, or than a half if they have three edges; and an only rim of three edges, however long.
  * Handles that one rectangle does not take are cut where a line around them or through their tunnel
  * is shorter than a tenth, and both sides closed. Three and more rims that are all shorter than a
- * half and make no handles, holes of a scan, are closed. Where no map of several cylinders is found that
- * turns no triangle over, the shortest of rims and such lines is closed or cut, too, then two more,
- * then four more, up to a half, and the best map is kept. The mesh has passed sm_mesh_prepare(),
- * and is no longer needed afterwards; `name` is for messages. Up to three factorisations of
- * [vertices], for a cap or a sphere one of them and one of [2 * vertices]; as many again where a
- * triangle is turned over at first, or for each of those that are tried. The caller frees. Errors:
- * triangulation.h's and solver.h's; SM_INPUT, one of several cylinders of whose maps each turns a
- * triangle over, and one whose parts stick out so far that over 1% of the triangles collapse in
- * double precision. */
+ * half and make no handles, holes of a scan, are closed. Where no map of several cylinders is found
+ * that turns no triangle over, the shortest of rims and such lines is closed or cut, too, then two
+ * more, then four more, up to a half, and the best map is kept. The mesh has passed
+ * sm_mesh_prepare(), and is no longer needed afterwards; `name` is for messages. Up to three
+ * factorisations of [vertices], for a cap or a sphere one of them and one of [2 * vertices]; as
+ * many again where a triangle is turned over at first, or for each of those that are tried. The
+ * caller frees. Errors: triangulation.h's and solver.h's; SM_INPUT, one of several cylinders of
+ * whose maps each turns a triangle over, and one whose parts stick out so far that over 1% of the
+ * triangles collapse in double precision. */
 SmCode ref_surface_map_create(const SmMesh *mesh, const char *name, RefSurfaceMap *map,
                               SmError *error);
 

@@ -50,11 +50,54 @@ void ref_chart_fold(RefChart *chart, const double *lower, const double *upper);
 /* Moves a place that is beyond a seam into the rectangle; false where there is no seam. */
 bool ref_chart_enter(const RefChart *chart, double theta[2]);
 
-/* The same; `turned` receives whether the plane goes on turned there by half a turn. */
-bool ref_chart_go_on(const RefChart *chart, double theta[2], bool *turned);
+/* The rectangle in whose plane a place is. */
+int ref_chart_plane(const RefChart *chart, const double theta[2]);
 
-/* Of a place and its images beyond seams, the one that is nearest to `near`. */
-void ref_chart_image(const RefChart *chart, const double theta[2], const double near[2],
+/* Goes straight from a place of a rectangle: theta becomes where that ends, in its rectangle.
+ * False, and theta there or beyond, where it meets a rim. */
+bool ref_chart_walk(const RefChart *chart, double theta[2], const double way[2]);
+
+/* What is behind a piece of a way: nothing more, another rectangle's plane, or a rim. */
+typedef enum { REF_LEG_LAST, REF_LEG_GOES_ON, REF_LEG_RIM } RefChartLeg;
+
+/* The same in pieces that lie in one rectangle's plane each. `leg` receives the first one of the
+ * way to `to`, in the plane of where it begins, a trace longer than it is where another plane is
+ * behind. theta and `to` become where the next one begins and where the way ends in the plane
+ * there, which `turned` says is turned by half a turn; or theta where the way ends, beyond the rim
+ * if there is one. */
+RefChartLeg ref_chart_leg(const RefChart *chart, double theta[2], double to[2], double leg[2][2],
+                          bool *turned);
+
+/* A straight piece of a rectangle as straight ways see it that lead there, from the rectangle
+ * itself or across seams or joints: in the plane that goes on from where they begin. */
+typedef struct {
+    double end[2][2];
+    int plane, home; /* the rectangles of where ways begin, and of the piece */
+    double shift[2]; /* what the piece's places have got, but for half a turn */
+    bool turned;
+} RefChartImage;
+
+typedef struct {
+    long count, room;
+    RefChartImage *image;      /* [count] */
+    RefCylinderImages scratch; /* private */
+} RefChartImages;
+
+/* The images of a piece, or of a place where both its ends are one, for ways that reach `margin` at
+ * most along both axes, the piece itself first; those of an earlier call are overwritten. Behind
+ * zeros there may be some that no way leads to. The caller frees. */
+void ref_chart_images(const RefChart *chart, const double end[2][2], double margin,
+                      RefChartImages *images);
+void ref_chart_images_free(RefChartImages *images);
+
+/* Whether the way from x, in the image's plane, leads to a place of the image: there may be a zero
+ * between. O(joints passed). */
+bool ref_chart_leads(const RefChart *chart, const RefChartImage *image, const double x[2],
+                     const double place[2]);
+
+/* Of a place and its images the one to which the shortest straight way leads from `near`, a place
+ * of a rectangle. False, and `near` itself, where none does: behind a zero. */
+bool ref_chart_image(const RefChart *chart, const double theta[2], const double near[2],
                      double image[2]);
 
 #endif

@@ -36,6 +36,7 @@ void ref_cracks_create(const RefChart *chart, double margin, RefCracks *cracks)
 
 void ref_cracks_free(RefCracks *cracks)
 {
+    ref_chart_images_free(&cracks->images);
     sm_free_all(cracks->bin, cracks->binned, cracks->near, cracks->piece, cracks->arm,
                 cracks->settled);
     *cracks = (RefCracks){.chart = NULL};
@@ -52,47 +53,32 @@ int ref_cracks_start(RefCracks *cracks, const double at[2], int parent)
 static void box_of(const RefCrackPiece *piece, double low[2], double high[2])
 {
     for (int d = 0; d < 2; d++) {
-        low[d] = fmin(piece->end[0][d], piece->end[1][d]);
-        high[d] = fmax(piece->end[0][d], piece->end[1][d]);
+        low[d] = fmin(piece->at.end[0][d], piece->at.end[1][d]);
+        high[d] = fmax(piece->at.end[0][d], piece->at.end[1][d]);
     }
 }
 
-static void add_piece(RefCracks *cracks, int arm, const double end[2][2])
+static void add_piece(RefCracks *cracks, int arm, const RefChartImage *at)
 {
     RefCrackArm *of = cracks->arm + arm;
-    RefCrackPiece piece = {.before = INFINITY,
+    RefCrackPiece piece = {.at = *at,
+                           .before = INFINITY,
                            .arm = arm,
                            .previous = of->last,
                            .born = cracks->now,
                            .changed = cracks->now};
-    memcpy(piece.end, end, sizeof piece.end);
     of->last = (int)cracks->pieces;
     cracks->stale = true;
     sm_make_room(cracks->piece, cracks->piece_room, cracks->pieces + 1);
     cracks->piece[cracks->pieces++] = piece;
 }
 
-/* Whether a box comes within the margin of the chart's rectangle. */
-static bool matters(const RefCracks *cracks, const double end[2][2])
-{
-    for (int d = 0; d < 2; d++)
-        if (fmax(end[0][d], end[1][d]) < cracks->chart->low[d] - cracks->margin ||
-            fmin(end[0][d], end[1][d]) > cracks->chart->high[d] + cracks->margin)
-            return false;
-    return true;
-}
-
-/* A piece and its images beyond seams. */
+/* A piece and its images. */
 static void add_pieces(RefCracks *cracks, int arm, const double end[2][2])
 {
-    add_piece(cracks, arm, end);
-    for (int s = 0; s < cracks->chart->seams; s++) {
-        const RefSeam *seam = cracks->chart->seam + s;
-        double there[2][2];
-        for (int e = 0; e < 2; e++) ref_seam_cross(seam, end[e], there[e]);
-        if (matters(cracks, (const double(*)[2])there))
-            add_piece(cracks, arm, (const double(*)[2])there);
-    }
+    ref_chart_images(cracks->chart, end, cracks->margin, &cracks->images);
+    for (long n = 0; n < cracks->images.count; n++)
+        add_piece(cracks, arm, cracks->images.image + n);
 }
 
 /* The bins that a box touches: from bin[d] to bin[2 + d]. What is beyond the margin is in the
@@ -222,8 +208,8 @@ static bool meets(const RefCrackPiece *piece, const double a[2], const double b[
 {
     double way[2], along[2], to[2];
     way_from(a, b, way);
-    way_from(piece->end[0], piece->end[1], along);
-    way_from(a, piece->end[0], to);
+    way_from(piece->at.end[0], piece->at.end[1], along);
+    way_from(a, piece->at.end[0], to);
     double turn = cross(way, along);
     if (turn == 0) return false;
     double t = cross(to, way) / turn;
@@ -231,13 +217,22 @@ static bool meets(const RefCrackPiece *piece, const double a[2], const double b[
     return t >= -OVERSHOOT && t <= 1 + OVERSHOOT && *share > 1e-9 && *share <= 1;
 }
 
-/* Whether an arm touches the place where another one begins or ends. */
-static bool begins_at(const RefCrackPiece *piece, const double at[2])
+/* Whether the way from x to a piece at that share of it leads there. */
+static bool leads(const RefCracks *cracks, const RefCrackPiece *piece, const double x[2],
+                  const double to[2], double share)
+{
+    double place[2];
+    for (int d = 0; d < 2; d++) place[d] = x[d] + share * (to[d] - x[d]);
+    return ref_chart_leads(cracks->chart, &piece->at, x, place);
+}
+
+/* Whether a piece begins or ends at a place, but for a trace. */
+static bool begins_at(const RefCrackPiece *piece, const double at[2], double trace)
 {
     for (int e = 0; e < 2; e++) {
         double way[2];
-        way_from(piece->end[e], at, way);
-        if (length_of(way) == 0) return true;
+        way_from(piece->at.end[e], at, way);
+        if (length_of(way) <= trace) return true;
     }
     return false;
 }
@@ -246,13 +241,19 @@ static bool begins_at(const RefCrackPiece *piece, const double at[2])
 static bool first_meeting(const RefCracks *cracks, const double tip[2], const double to[2],
                           double *share)
 {
-    int count;
+    int count, plane = ref_chart_plane(cracks->chart, tip);
+    double way[2];
     bool any = false;
     const int *member = among(cracks, tip, to, &count);
+    way_from(tip, to, way);
+    double trace = OVERSHOOT * length_of(way);
     for (int n = 0; n < count; n++) {
         const RefCrackPiece *piece = cracks->piece + member[n];
         double there;
-        if (begins_at(piece, tip) || !meets(piece, tip, to, &there) || there >= *share) continue;
+        if (piece->at.plane != plane || begins_at(piece, tip, trace) ||
+            !meets(piece, tip, to, &there) || there >= *share ||
+            !leads(cracks, piece, tip, to, there))
+            continue;
         *share = there;
         any = true;
     }
@@ -261,29 +262,34 @@ static bool first_meeting(const RefCracks *cracks, const double tip[2], const do
 
 void ref_cracks_grow(RefCracks *cracks, int arm, const double to[2])
 {
-    double end[2][2], way[2], share = 1;
-    memcpy(end[0], cracks->arm[arm].tip, sizeof end[0]);
-    memcpy(end[1], to, sizeof end[1]);
-    way_from(end[0], end[1], way);
-    bool ends = first_meeting(cracks, end[0], to, &share), turned = false;
-    for (int d = 0; ends && d < 2; d++) end[1][d] = end[0][d] + (share + OVERSHOOT) * way[d];
-    double length = length_of(way) * fmin(share, 1), entered[2];
-    if (!(length > 0)) return;
-    lengthen(cracks, arm, length);
-    add_pieces(cracks, arm, (const double(*)[2])end);
-    memcpy(entered, end[1], sizeof entered);
-    if (!ref_chart_go_on(cracks->chart, entered, &turned)) ends = true;
     RefCrackArm *of = cracks->arm + arm;
-    memcpy(of->tip, entered, sizeof of->tip);
-    for (int d = 0; d < 2; d++) of->way[d] = (turned ? -1 : 1) * way[d] / length_of(way);
-    of->length += length;
-    if (ends) ref_cracks_end(cracks, arm);
+    double tip[2] = {of->tip[0], of->tip[1]}, end[2] = {to[0], to[1]}, way[2], leg[2][2], share = 1;
+    way_from(tip, to, way);
+    double whole = length_of(way);
+    bool ends = first_meeting(cracks, tip, to, &share), turned = false;
+    for (int d = 0; ends && d < 2; d++) end[d] = tip[d] + (share + OVERSHOOT) * way[d];
+    double left = whole * fmin(share, 1), beyond = ends ? OVERSHOOT * whole : 0;
+    if (!(left > 0)) return;
+    RefChartLeg kind = REF_LEG_GOES_ON;
+    while (kind == REF_LEG_GOES_ON && left > OVERSHOOT * whole) {
+        kind = ref_chart_leg(cracks->chart, tip, end, leg, &turned);
+        double rest[2], after = 0;
+        way_from(tip, end, rest);
+        if (kind == REF_LEG_GOES_ON) after = fmax(length_of(rest) - beyond, 0);
+        lengthen(cracks, arm, left - after);
+        add_pieces(cracks, arm, (const double(*)[2])leg);
+        left = after;
+    }
+    memcpy(of->tip, tip, sizeof of->tip);
+    for (int d = 0; d < 2; d++) of->way[d] = (turned ? -1 : 1) * way[d] / whole;
+    of->length += whole * fmin(share, 1);
+    if (ends || kind == REF_LEG_RIM) ref_cracks_end(cracks, arm);
 }
 
 /* Whether both ends of one are beyond the other's along an axis. */
 static bool boxes_apart(const RefCrackPiece *piece, const double x[2], const double from[2])
 {
-    const double(*end)[2] = piece->end;
+    const double(*end)[2] = piece->at.end;
     bool apart = false;
     for (int d = 0; d < 2; d++) {
         double low = x[d] < from[d] ? x[d] : from[d], high = x[d] < from[d] ? from[d] : x[d];
@@ -293,21 +299,23 @@ static bool boxes_apart(const RefCrackPiece *piece, const double x[2], const dou
     return apart;
 }
 
-/* Whether the way from `from` to x meets a piece, ends counted in. */
-static bool crosses(const RefCrackPiece *piece, const double x[2], const double from[2])
+/* Whether the way from `from` to x, which is in that plane, meets a piece, ends counted in. */
+static bool crosses(const RefCracks *cracks, const RefCrackPiece *piece, int plane,
+                    const double x[2], const double from[2])
 {
     double along[2], way[2], a[2], b[2], to[2];
-    if (boxes_apart(piece, x, from)) return false;
-    way_from(piece->end[0], piece->end[1], along);
+    if (piece->at.plane != plane || boxes_apart(piece, x, from)) return false;
+    way_from(piece->at.end[0], piece->at.end[1], along);
     way_from(from, x, way);
-    way_from(piece->end[0], from, a);
-    way_from(piece->end[0], x, b);
+    way_from(piece->at.end[0], from, a);
+    way_from(piece->at.end[0], x, b);
     double sides[2] = {cross(along, a), cross(along, b)};
     if ((sides[0] > 0 && sides[1] > 0) || (sides[0] < 0 && sides[1] < 0)) return false;
-    way_from(piece->end[1], from, to);
+    way_from(piece->at.end[1], from, to);
     double ends[2] = {cross(way, a), cross(way, to)};
     if ((ends[0] > 0 && ends[1] > 0) || (ends[0] < 0 && ends[1] < 0)) return false;
-    return cross(along, way) != 0;
+    double turn = cross(along, way);
+    return turn != 0 && leads(cracks, piece, x, from, sides[1] / turn);
 }
 
 /* What gets past a piece, which the way crosses, `ahead` of which the tip is; false: nothing. The
@@ -316,9 +324,9 @@ static bool pass_piece(const RefCrackPiece *piece, double ahead, const double x[
                        const double from[2], double width, double part[6])
 {
     double along[2], way[2], start[2], slope[2], t_k[2];
-    way_from(piece->end[0], piece->end[1], along);
+    way_from(piece->at.end[0], piece->at.end[1], along);
     way_from(from, x, way);
-    way_from(piece->end[0], from, start);
+    way_from(piece->at.end[0], from, start);
     double length = length_of(along), D = cross(along, way);
     double t = fmin(fmax(cross(start, way) / D, 0), 1);
     double s = (length * (1 - t) + ahead) / width, scale = -length / width;
@@ -342,11 +350,13 @@ static bool pass(const RefCracks *cracks, bool earlier, const double x[3], const
 {
     int count;
     const int *member = among(cracks, x, from, &count);
+    int plane = ref_chart_plane(cracks->chart, x);
     memcpy(part, whole, sizeof whole);
     for (int n = 0; n < count; n++) {
         const RefCrackPiece *piece = cracks->piece + member[n];
         double f[6], ahead = earlier ? piece->before : piece->ahead;
-        if ((earlier && piece->born == cracks->now) || !crosses(piece, x, from)) continue;
+        if (earlier && piece->born == cracks->now) continue;
+        if (!crosses(cracks, piece, plane, x, from)) continue;
         if (!pass_piece(piece, ahead, x, from, TIP_REACH * reach, f)) return false;
         ref_mls_multiply(f, part);
     }
@@ -375,6 +385,12 @@ static void box_of_ways(const RefGrid *grid, const double from[2], double low[2]
     }
 }
 
+static int plane_of(const RefCracks *cracks, const RefGrid *grid)
+{
+    const double first[2] = {grid->at[0][0], grid->at[1][0]};
+    return ref_chart_plane(cracks->chart, first);
+}
+
 static const int *among_grid(const RefCracks *cracks, const RefGrid *grid, const double from[2],
                              int *count)
 {
@@ -383,37 +399,64 @@ static const int *among_grid(const RefCracks *cracks, const RefGrid *grid, const
     return among(cracks, low, high, count);
 }
 
-/* Whether a piece may be in a way from `from` to a place of a grid: it is not apart from the box of
- * all, nor are they all on one side of it. */
-static bool may_cross(const RefCrackPiece *piece, const RefGrid *grid, const double from[2])
+static void place_of(const RefGrid *grid, int p, double x[2])
+{
+    x[0] = grid->at[0][p % grid->count[0]];
+    x[1] = grid->at[1][p / grid->count[0]];
+}
+
+/* Whether a piece may be in a way from `from` to a place of a grid, all in that plane: it is not
+ * apart from the box of all, nor are they all on one side of it. */
+static bool may_cross(const RefCrackPiece *piece, int plane, const RefGrid *grid,
+                      const double from[2])
 {
     double low[2], high[2], along[2], way[2];
     box_of_ways(grid, from, low, high);
-    if (!touches(piece, low, high)) return false;
-    way_from(piece->end[0], piece->end[1], along);
-    way_from(piece->end[0], from, way);
+    if (piece->at.plane != plane || !touches(piece, low, high)) return false;
+    way_from(piece->at.end[0], piece->at.end[1], along);
+    way_from(piece->at.end[0], from, way);
     double side = cross(along, way);
     bool all = side != 0;
     for (int c = 0; c < 4; c++) {
         const double corner[2] = {grid->at[0][c % 2 ? grid->count[0] - 1 : 0],
                                   grid->at[1][c / 2 ? grid->count[1] - 1 : 0]};
-        way_from(piece->end[0], corner, way);
+        way_from(piece->at.end[0], corner, way);
         double there = cross(along, way);
         all = all && (side > 0 ? there > 0 : there < 0);
     }
     return !all;
 }
 
+/* Whether straight ways to places of a grid lead to where they meet a piece; asks about those that
+ * `crossing` marks, and leaves those that do. */
+static bool all_lead(const RefCracks *cracks, const RefCrackPiece *piece, const RefGrid *grid,
+                     const double from[2], unsigned char *crossing)
+{
+    double along[2];
+    bool any = false;
+    way_from(piece->at.end[0], piece->at.end[1], along);
+    for (int p = 0; p < grid->count[0] * grid->count[1]; p++) {
+        if (!crossing[p]) continue;
+        double x[2], way[2], b[2];
+        place_of(grid, p, x);
+        way_from(from, x, way);
+        way_from(piece->at.end[0], x, b);
+        crossing[p] = leads(cracks, piece, x, from, cross(along, b) / cross(along, way));
+        any |= crossing[p];
+    }
+    return any;
+}
+
 /* crosses() for all places of a grid, of which products of one coordinate each are made once. */
-static bool cross_grid(const RefCrackPiece *piece, const RefGrid *grid, const double from[2],
-                       unsigned char *crossing)
+static bool cross_grid(const RefCracks *cracks, const RefCrackPiece *piece, const RefGrid *grid,
+                       const double from[2], unsigned char crossing[REF_GRID_SIDE * REF_GRID_SIDE])
 {
     enum { PRODUCTS = 4 };
-    const double *e = piece->end[0];
+    const double *e = piece->at.end[0];
     double along[2], a[2], to[2], product[2][PRODUCTS][REF_GRID_SIDE];
-    way_from(piece->end[0], piece->end[1], along);
-    way_from(piece->end[0], from, a);
-    way_from(piece->end[1], from, to);
+    way_from(piece->at.end[0], piece->at.end[1], along);
+    way_from(piece->at.end[0], from, a);
+    way_from(piece->at.end[1], from, to);
     for (int d = 0; d < 2; d++)
         for (int i = 0; i < grid->count[d]; i++) {
             double x = grid->at[d][i], way = x - from[d];
@@ -432,10 +475,10 @@ static bool cross_grid(const RefCrackPiece *piece, const RefGrid *grid, const do
             bool apart = ((side > 0) & (there > 0)) | ((side < 0) & (there < 0)) |
                          ((first > 0) & (second > 0)) | ((first < 0) & (second < 0)) |
                          (product[1][3][j] == product[0][3][i]);
-            *crossing++ = !apart;
+            crossing[grid->count[0] * j + i] = !apart;
             any |= !apart;
         }
-    return any;
+    return any && (!cracks->chart->cylinders || all_lead(cracks, piece, grid, from, crossing));
 }
 
 /* What is left of a part that a piece takes from. */
@@ -457,13 +500,17 @@ bool ref_cracks_fan(const RefCracks *cracks, const RefGrid *grid, const double f
     int count, places = grid->count[0] * grid->count[1];
     bool any = false;
     const int *member = among_grid(cracks, grid, from, &count);
+    int plane = plane_of(cracks, grid);
     for (int n = 0; n < count; n++) {
         const RefCrackPiece *piece = cracks->piece + member[n];
-        if (!may_cross(piece, grid, from) || !cross_grid(piece, grid, from, crossing)) continue;
+        if (!may_cross(piece, plane, grid, from) ||
+            !cross_grid(cracks, piece, grid, from, crossing))
+            continue;
         for (int p = 0; !any && p < places; p++) memcpy(part[p], whole, sizeof whole);
         any = true;
         for (int p = 0; p < places; p++) {
-            const double x[2] = {grid->at[0][p % grid->count[0]], grid->at[1][p / grid->count[0]]};
+            double x[2];
+            place_of(grid, p, x);
             if (crossing[p]) take_from(piece, x, from, TIP_REACH * reach, part[p]);
         }
     }
@@ -476,11 +523,13 @@ bool ref_cracks_fan_changed(const RefCracks *cracks, const RefGrid *grid, const 
     unsigned char crossing[REF_GRID_SIDE * REF_GRID_SIDE];
     int count;
     const int *member = among_grid(cracks, grid, from, &count);
+    int plane = plane_of(cracks, grid);
     for (int n = 0; n < count; n++) {
         const RefCrackPiece *piece = cracks->piece + member[n];
         bool changes = piece->changed == cracks->now &&
                        (piece->born == cracks->now || piece->before < TIP_REACH * reach);
-        if (changes && may_cross(piece, grid, from) && cross_grid(piece, grid, from, crossing))
+        if (changes && may_cross(piece, plane, grid, from) &&
+            cross_grid(cracks, piece, grid, from, crossing))
             return true;
     }
     return false;
@@ -490,25 +539,31 @@ bool ref_cracks_part(const RefCracks *cracks, const double x[2], const double fr
 {
     int count;
     const int *member = among(cracks, x, from, &count);
+    int plane = ref_chart_plane(cracks->chart, x);
     for (int n = 0; n < count; n++)
-        if (crosses(cracks->piece + member[n], x, from)) return true;
+        if (crosses(cracks, cracks->piece + member[n], plane, x, from)) return true;
     return false;
 }
 
 bool ref_cracks_stir(const RefCracks *cracks, const double low[2], const double high[2])
 {
-    for (long p = 0; p < cracks->pieces; p++)
-        if (cracks->piece[p].changed == cracks->now && touches(cracks->piece + p, low, high))
+    const double middle[2] = {(low[0] + high[0]) / 2, (low[1] + high[1]) / 2};
+    int plane = ref_chart_plane(cracks->chart, middle);
+    for (long p = 0; p < cracks->pieces; p++) {
+        const RefCrackPiece *piece = cracks->piece + p;
+        if (piece->changed == cracks->now && piece->at.plane == plane && touches(piece, low, high))
             return true;
+    }
     return false;
 }
 
 bool ref_cracks_end_ahead(const RefCracks *cracks, int arm, double far)
 {
     const RefCrackArm *of = cracks->arm + arm;
-    double to[2] = {of->tip[0] + far * of->way[0], of->tip[1] + far * of->way[1]}, share = 1;
+    double end[2] = {of->tip[0], of->tip[1]}, way[2] = {far * of->way[0], far * of->way[1]};
+    double to[2] = {of->tip[0] + way[0], of->tip[1] + way[1]}, share = 1;
     if (first_meeting(cracks, of->tip, to, &share)) return true;
-    return !ref_chart_enter(cracks->chart, to);
+    return !ref_chart_walk(cracks->chart, end, way);
 }
 
 void ref_cracks_settle(RefCracks *cracks)
@@ -543,11 +598,13 @@ RefCracks ref_cracks_settled(const RefCracks *cracks)
 double ref_cracks_distance(const RefCracks *cracks, const double x[2], double far)
 {
     double least = far;
+    int plane = ref_chart_plane(cracks->chart, x);
     for (long p = 0; p < cracks->pieces; p++) {
         const RefCrackPiece *piece = cracks->piece + p;
         double along[2], to[2];
-        way_from(piece->end[0], piece->end[1], along);
-        way_from(piece->end[0], x, to);
+        if (piece->at.plane != plane) continue;
+        way_from(piece->at.end[0], piece->at.end[1], along);
+        way_from(piece->at.end[0], x, to);
         double square = along[0] * along[0] + along[1] * along[1];
         double t = fmin(fmax((along[0] * to[0] + along[1] * to[1]) / square, 0), 1);
         for (int d = 0; d < 2; d++) to[d] -= t * along[d];

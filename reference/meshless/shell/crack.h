@@ -7,16 +7,17 @@
  * its tip: c(s / b), where s is the length of the arm from the crossing to the tip, c the weights'
  * spline and b a quarter of the node's reach (Organ, Fleming, Terry and Belytschko 1996, in the
  * plane as Pauly et al. 2005 have it; square covers have two arguments, so that the weight is
- * multiplied instead of its argument enlarged). An arm that goes beyond a seam goes on behind it.
- */
+ * multiplied instead of its argument enlarged). An arm that goes beyond a seam goes on behind it,
+ * and so does one that comes to a joint of cylinders: a piece of it lies in one of them, and its
+ * images are where straight ways from others lead to it (chart.h). */
 #ifndef REF_CRACK_H
 #define REF_CRACK_H
 
 #include "chart.h"
 
-/* A straight piece of an arm, or an image of one beyond a seam. */
+/* A straight piece of an arm, or an image of one. */
 typedef struct {
-    double end[2][2];  /* the second is nearer to the tip */
+    RefChartImage at;  /* its second end is nearer to the tip */
     double ahead;      /* length of the arm from there to the tip; infinite where there is no tip */
     double before;     /* the same before the changes that are not settled yet */
     int arm, previous; /* the piece of the arm that was made before this one, or -1 */
@@ -46,9 +47,10 @@ typedef struct {
     double low[2], high[2]; /* a box, and all pieces whose boxes touch it */
     long bin_room, near_count, near_room;
     int *near;
+    RefChartImages images;
 } RefCracks;
 
-/* Places at[0][i], at[1][j]. */
+/* Places at[0][i], at[1][j] of one rectangle. */
 typedef struct {
     int count[2]; /* REF_GRID_SIDE at most */
     const double *at[2];
@@ -64,8 +66,9 @@ void ref_cracks_free(RefCracks *cracks);
  * that passes there, or -1. */
 int ref_cracks_start(RefCracks *cracks, const double at[2], int parent);
 
-/* Adds a piece from an arm's tip straight to `to`, which may be beyond a seam. Where it meets
- * another crack or a rim, it stops, and the arm is ended. O(pieces). */
+/* Adds a piece, or one for every cylinder, from an arm's tip straight to `to`, which may be beyond
+ * a seam or joints. Where it meets another crack or a rim, it stops, and the arm is ended. Zeros
+ * are passed on one side. O(pieces). */
 void ref_cracks_grow(RefCracks *cracks, int arm, const double to[2]);
 
 /* Whether an arm would meet another crack or a rim if it went on straight for `far`. */
@@ -83,7 +86,7 @@ bool ref_cracks_pass(const void *cracks, const double x[3], const double from[3]
 bool ref_cracks_passed(const void *cracks, const double x[3], const double from[3], double reach,
                        double part[6]);
 
-/* Whether a crack is between two places, the first in the rectangle. */
+/* Whether a crack is between two places, the first in a rectangle and the second in its plane. */
 bool ref_cracks_part(const RefCracks *cracks, const double x[2], const double from[2]);
 
 /* Looks up the pieces whose boxes touch a box, which saves the next questions about ways in it from
@@ -100,7 +103,8 @@ bool ref_cracks_fan(const RefCracks *cracks, const RefGrid *grid, const double f
 bool ref_cracks_fan_changed(const RefCracks *cracks, const RefGrid *grid, const double from[2],
                             double reach);
 
-/* Whether there is a change that is not settled of a piece whose box touches a box. */
+/* Whether there is a change that is not settled of a piece, or an image of one, whose box touches a
+ * box about a place of a rectangle. */
 bool ref_cracks_stir(const RefCracks *cracks, const double low[2], const double high[2]);
 
 /* All changes become what was before. O(pieces). */

@@ -176,10 +176,8 @@ bool ref_cracked_side(const RefCracked *cracked, const double theta[2], const do
                       RefShape *shape)
 {
     int c = ref_quadtree_at(&cracked->shell->tree, eye), n = ref_cracked_sample(cracked, c, eye);
-    double image[2];
     if (n < 0) return false;
-    ref_chart_image(cracked->cracks.chart, theta, eye, image);
-    ref_samples_expand(&cracked->cell[c].samples, n, image, shape);
+    ref_samples_expand(&cracked->cell[c].samples, n, theta, shape);
     return shape->count > 0;
 }
 
@@ -266,13 +264,15 @@ static double share_of(const RefCracked *cracked, long c)
     ref_quadtree_cell(&shell->tree, shell->tree.cell + c, middle, edge);
     for (int n = 0; n < SHARE_POINTS * SHARE_POINTS; n++) {
         const int which[2] = {n % SHARE_POINTS, n / SHARE_POINTS};
-        double theta[3] = {0}, entered[2], weight = 1, slope[2], part[6];
+        double theta[3] = {0}, end[2] = {middle[0], middle[1]}, way[2], weight = 1, slope[2];
+        double part[6];
         for (int d = 0; d < 2; d++) {
             double s = (2 * which[d] + 1.0) / SHARE_POINTS - 1;
-            entered[d] = theta[d] = middle[d] + s * reach;
+            way[d] = s * reach;
+            theta[d] = middle[d] + way[d];
             weight *= ref_mls_spline(s, slope);
         }
-        if (!ref_chart_enter(&shell->chart, entered)) continue;
+        if (!ref_chart_walk(&shell->chart, end, way)) continue;
         all += weight;
         if (ref_cracks_pass(&cracked->cracks, middle, theta, reach, part)) got += weight * part[0];
     }
@@ -299,8 +299,16 @@ static void inherit(RefCracked *cracked, long from)
     }
 }
 
-/* Splits cells whose node gets too little; what others get is no matter. Returns how many cells
- * were terminal and are no more. */
+/* Whether a zero is on a box's sides in its rectangle. The surface is not smooth over the plane
+ * there, so that new nodes' parameters would be off; and cells there are finer already. With splits
+ * a crack through a zero made three times as many samples soft. */
+static bool has_zero(const RefChart *chart, const double low[2], const double high[2])
+{
+    return chart->cylinders && ref_cylinders_zero(chart->cylinders, low, high);
+}
+
+/* Splits cells whose node gets too little, but about zeros; what others get is no matter. Returns
+ * how many cells were terminal and are no more. */
 static long split_cells(RefCracked *cracked)
 {
     RefQuadtree *tree = &cracked->shell->tree;
@@ -316,6 +324,7 @@ static long split_cells(RefCracked *cracked)
             high[d] = middle[d] + reach;
         }
         if (c < before && !ref_cracks_stir(&cracked->cracks, low, high)) continue;
+        if (has_zero(&cracked->shell->chart, low, high)) continue;
         if (share_of(cracked, c) >= cracked->cracked.least_share) continue;
         if (ref_quadtree_split(tree, c)) inherit(cracked, count);
     }
@@ -402,10 +411,13 @@ static bool is_stale(const RefCracked *cracked, long c, const unsigned char *fre
         high[d] = at[d][REF_GRID_SIDE - 1] + margin;
     }
     ref_cracks_look(&cracked->cracks, low, high);
+    const double corner[2] = {at[0][0], at[1][0]};
+    int plane = ref_chart_plane(cracked->cracks.chart, corner);
     for (long n = 0; n < nodes->count + nodes->images; n++) {
         const double *node = nodes->position[n], reach = nodes->reach[n];
         RefGrid grid;
         int first[2];
+        if (nodes->cylinders && nodes->home[n] != plane) continue;
         if (!(node[0] - low[0] > margin - reach && high[0] - node[0] > margin - reach &&
               node[1] - low[1] > margin - reach && high[1] - node[1] > margin - reach) ||
             !ref_samples_reached((const double(*)[REF_GRID_SIDE])at, node, reach, first, &grid))

@@ -2,10 +2,10 @@
  * when the crack changes, and only that.
  *
  * Cells whose node gets too little from its own cover are split into four, with a node each, and
- * others to keep the tree balanced. Then samples whose functions changed are taken again, cell by
- * cell, and sums of pairs whose cells changed are added up again, in the order in which they would
- * be if all was made anew: the matrices have the same bits. What is made depends on where cracks
- * are and not on how they came there.
+ * others to keep the tree balanced; those about zeros of a plane of cylinders are not. Then samples
+ * whose functions changed are taken again, cell by cell, and sums of pairs whose cells changed are
+ * added up again, in the order in which they would be if all was made anew: the matrices have the
+ * same bits. What is made depends on where cracks are and not on how they came there.
  *
  * A sample is stiff where its functions leave the surface what a conformal map would have of it
  * (thin.h): a shell that cracks is soft where its map draws it out more than fourfold, before any
@@ -98,8 +98,8 @@ RefCrackedSaved ref_cracked_save(const RefCracked *cracked);
 void ref_cracked_restore(RefCracked *cracked, RefCrackedSaved *saved);
 void ref_cracked_saved_free(RefCrackedSaved *saved);
 
-/* The functions at a place as `eye` beside it sees it, which may be on the other side of a crack;
- * false where no sample is seen. */
+/* The functions at a place, in the plane of `eye` beside it, as that sees it, which may be on the
+ * other side of a crack; false where no sample is seen. */
 bool ref_cracked_side(const RefCracked *cracked, const double theta[2], const double eye[2],
                       RefShape *shape);
 

@@ -82,22 +82,28 @@ static double edge_at(const RefCracked *cracked, const double at[2])
     return fmin(edge[0], edge[1]);
 }
 
-/* The mean of the stresses before a tip, also behind seams, where tensors stay what they are. */
+/* The mean of the stresses before a tip, also behind seams and joints, where tensors stay what they
+ * are. */
 static RefFaceStress mean_before(const RefCracked *cracked, const RefCrackArm *arm, double far,
                                  const RefFaceStress *stress, long count)
 {
     const RefChart *chart = cracked->cracks.chart;
-    double place[REF_MOST_SEAMS + 1][2], sum = 0;
+    const double tip[2][2] = {{arm->tip[0], arm->tip[1]}, {arm->tip[0], arm->tip[1]}};
+    RefChartImages images = {.count = 0};
     RefFaceStress mean = {.theta = {arm->tip[0], arm->tip[1]}};
-    memcpy(place[0], arm->tip, sizeof place[0]);
-    for (int s = 0; s < chart->seams; s++) ref_seam_cross(chart->seam + s, arm->tip, place[s + 1]);
-    for (int s = 0; s <= chart->seams; s++)
+    double sum = 0;
+    ref_chart_images(chart, tip, far, &images);
+    for (long s = 0; s < images.count; s++)
         for (long n = 0; n < count; n++) {
-            double way[2] = {stress[n].theta[0] - place[s][0], stress[n].theta[1] - place[s][1]};
+            const RefChartImage *image = images.image + s;
+            const double *place = image->end[0], *at = stress[n].theta;
+            double way[2] = {at[0] - place[0], at[1] - place[1]};
             double weight = 1 - (way[0] * way[0] + way[1] * way[1]) / (far * far);
             double ahead = way[0] * arm->way[0] + way[1] * arm->way[1];
             if (!(weight > 0) || !(stress[n].metric[0] > 0) ||
-                (s > 0 && chart->seam[s - 1].turned ? ahead > 0 : ahead < 0))
+                (image->turned ? ahead > 0 : ahead < 0) ||
+                image->plane != ref_chart_plane(chart, at) ||
+                !ref_chart_leads(chart, image, at, place))
                 continue;
             sum += weight;
             for (int i = 0; i < 3; i++) {
@@ -105,6 +111,7 @@ static RefFaceStress mean_before(const RefCracked *cracked, const RefCrackArm *a
                 mean.metric[i] += weight * stress[n].metric[i];
             }
         }
+    ref_chart_images_free(&images);
     if (!(sum > 0)) return mean;
     for (int i = 0; i < 3; i++) {
         mean.sigma[i] /= sum;

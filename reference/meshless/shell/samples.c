@@ -182,26 +182,14 @@ bool ref_samples_reached(const double at[2][REF_GRID_SIDE], const double node[2]
     return grid->count[0] > 0 && grid->count[1] > 0;
 }
 
-/* The weights of one node at a cell's samples; false: none. */
-static bool weigh(const double at[2][ALONG], const double node[2], double reach,
-                  const RefCracks *cracks, RefCellNode *of)
+/* Multiplies the weights of a node by parts that get to the samples of a grid; whether any is left.
+ */
+static bool take_parts(const RefGrid *grid, const int first[2], const double (*part)[6],
+                       RefCellNode *of)
 {
-    int first[2];
-    RefGrid grid;
-    double spline[2][3][ALONG] = {{{0}}}, part[REF_SAMPLES_PER_CELL][6];
-    if (!ref_samples_reached(at, node, reach, first, &grid)) return false;
-    for (int d = 0; d < 2; d++)
-        for (int i = first[d]; i < first[d] + grid.count[d]; i++) {
-            double slope[2];
-            spline[d][0][i] = ref_mls_spline((at[d][i] - node[d]) / reach, slope);
-            spline[d][1][i] = slope[0] / reach;
-            spline[d][2][i] = slope[1] / (reach * reach);
-        }
-    ref_cell_functions.weigh((const double(*)[3][ALONG])spline, of);
-    if (!ref_cracks_fan(cracks, &grid, node, reach, part)) return true;
     bool any = false;
-    for (int n = 0; n < grid.count[0] * grid.count[1]; n++) {
-        int l = ALONG * (first[1] + n / grid.count[0]) + first[0] + n % grid.count[0];
+    for (int n = 0; n < grid->count[0] * grid->count[1]; n++) {
+        int l = ALONG * (first[1] + n / grid->count[0]) + first[0] + n % grid->count[0];
         double w[6];
         for (int k = 0; k < 6; k++) w[k] = of->weight[k][l];
         ref_mls_multiply(part[n], w);
@@ -211,18 +199,57 @@ static bool weigh(const double at[2][ALONG], const double node[2], double reach,
     return any;
 }
 
+/* What gets past the zeros of a plane of cylinders to the samples of a grid. */
+static void pass_zeros(const RefNodes *nodes, long n, const RefGrid *grid, double (*part)[6])
+{
+    const double *node = nodes->position[nodes->owner[n]];
+    for (int p = 0; p < grid->count[0] * grid->count[1]; p++) {
+        const double x[3] = {grid->at[0][p % grid->count[0]], grid->at[1][p / grid->count[0]]};
+        if (!ref_cylinders_pass(nodes->cylinders, x, nodes->position[n], node, nodes->reach[n],
+                                part[p]))
+            memset(part[p], 0, sizeof part[p]);
+    }
+}
+
+/* The weights of one node at a cell's samples; false: none. */
+static bool weigh(const double at[2][ALONG], const RefNodes *nodes, long n, const RefCracks *cracks,
+                  RefCellNode *of)
+{
+    int first[2];
+    RefGrid grid;
+    double spline[2][3][ALONG] = {{{0}}}, part[REF_SAMPLES_PER_CELL][6];
+    const double *node = nodes->position[n], reach = nodes->reach[n];
+    if (!ref_samples_reached(at, node, reach, first, &grid)) return false;
+    for (int d = 0; d < 2; d++)
+        for (int i = first[d]; i < first[d] + grid.count[d]; i++) {
+            double slope[2];
+            spline[d][0][i] = ref_mls_spline((at[d][i] - node[d]) / reach, slope);
+            spline[d][1][i] = slope[0] / reach;
+            spline[d][2][i] = slope[1] / (reach * reach);
+        }
+    ref_cell_functions.weigh((const double(*)[3][ALONG])spline, of);
+    if (nodes->cylinders && nodes->dimmed[n]) {
+        pass_zeros(nodes, n, &grid, part);
+        if (!take_parts(&grid, first, (const double(*)[6])part, of)) return false;
+    }
+    return !ref_cracks_fan(cracks, &grid, node, reach, part) ||
+           take_parts(&grid, first, (const double(*)[6])part, of);
+}
+
 /* All nodes that a cell's samples see, rising; returns how many. */
 static int gather(const double at[2][ALONG], const RefNodes *nodes, double scale,
                   const RefCracks *cracks, RefSamplesWork *work)
 {
-    int count = 0;
+    int count = 0, home = 0;
     double low[2], high[2];
     for (int d = 0; d < 2; d++) {
         low[d] = at[d][0];
         high[d] = at[d][ALONG - 1];
     }
+    if (nodes->cylinders) home = ref_cylinders_at(nodes->cylinders, low);
     for (long n = 0; n < nodes->count + nodes->images; n++) {
         const double *node = nodes->position[n], reach = nodes->reach[n];
+        if (nodes->cylinders && nodes->home[n] != home) continue;
         if (!(node[0] - low[0] > -reach && node[0] - high[0] < reach && node[1] - low[1] > -reach &&
               node[1] - high[1] < reach))
             continue;
@@ -233,7 +260,7 @@ static int gather(const double at[2][ALONG], const RefNodes *nodes, double scale
             work->room = more;
         }
         RefCellNode *of = work->node + count;
-        if (!weigh(at, node, reach, cracks, of)) continue;
+        if (!weigh(at, nodes, n, cracks, of)) continue;
         for (int l = 0; l < REF_SAMPLES_PER_CELL; l++) {
             of->way[0][l] = (node[0] - at[0][l % ALONG]) / scale;
             of->way[1][l] = (node[1] - at[1][l / ALONG]) / scale;

@@ -210,6 +210,37 @@ TEST(what_has_changed_is_seen)
     plate_free(&plate);
 }
 
+/* A crack across no more than one edge, whose ends hold together, tears nothing: what is drawn
+ * stays a surface. */
+TEST(a_crack_of_one_edge_is_not_drawn)
+{
+    needs_solver();
+    static Plate plate;
+    plate_create(false, &plate);
+    RefCracks *cracks = &plate.breaking.cracked.cracks;
+    const RefTornSurface *torn = &plate.torn;
+    long edges = torn->open_edges;
+    for (long t = 50; t < torn->triangles; t += 97) {
+        const double *a = torn->middle[t], *b = torn->next[t][0];
+        double at[2], to[2];
+        if (fabs(a[0] - length / 2) > length / 2 - 0.3 || fabs(a[1] - 0.5) > 0.3) continue;
+        for (int d = 0; d < 2; d++) {
+            at[d] = (a[d] + b[d]) / 2 + 0.05 * (d ? a[0] - b[0] : b[1] - a[1]);
+            to[d] = a[d] + b[d] - at[d];
+        }
+        ref_cracks_grow(cracks, ref_cracks_start(cracks, at, -1), to);
+        assert_true(ref_cracks_part(cracks, a, b));
+    }
+    assert_true(cracks->pieces > 2);
+    assert_int_equal(ref_breaking_update(&plate.breaking, NULL), SM_OK);
+    assert_false(ref_torn_update(&plate.torn, &plate.breaking.cracked));
+    assert_int_equal(torn->open_edges, edges);
+    SmMesh mesh = drawn(&plate, (const double(*)[3])plate.rest);
+    assert_true(sm_mesh_info(&mesh).watertight);
+    sm_mesh_free(&mesh);
+    plate_free(&plate);
+}
+
 /* A straight crack, by steps, that is ended where it does not meet another one. */
 static int crack_to(RefCracks *cracks, const double from[2], const double to[2], int parent)
 {

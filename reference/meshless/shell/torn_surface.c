@@ -10,8 +10,8 @@
 
 void ref_torn_free(RefTornSurface *torn)
 {
-    sm_free_all(torn->crumb, torn->beside, torn->middle, torn->corner, torn->open, torn->of,
-                torn->eye);
+    sm_free_all(torn->crumb, torn->beside, torn->middle, torn->place, torn->next, torn->corner,
+                torn->open, torn->of, torn->eye, torn->seen);
     *torn = (RefTornSurface){.vertices = 0};
 }
 
@@ -35,6 +35,33 @@ static void join(RefTornSurface *torn)
     free(edge);
 }
 
+/* Where a triangle's corners are in the plane of a place; returns how many it sees. */
+static int see_corners(const RefChart *chart, const RefTornSurface *torn, long t,
+                       const double from[2], double place[3][2])
+{
+    int seen = 0;
+    for (int k = 0; k < 3; k++)
+        seen += ref_chart_image(chart, torn->theta[torn->whole[t][k]], from, place[k]);
+    return seen;
+}
+
+/* The middle as the corner has it that sees most of the others: about a zero none may see all. */
+static void find_middle(const RefChart *chart, RefTornSurface *torn, long t)
+{
+    double *middle = torn->middle[t];
+    for (int k = 0, most = 0; k < 3 && most < 3; k++) {
+        const double *corner = torn->theta[torn->whole[t][k]];
+        double place[3][2], way[2];
+        int seen = see_corners(chart, torn, t, corner, place);
+        if (seen <= most) continue;
+        most = seen;
+        for (int d = 0; d < 2; d++)
+            way[d] = place[0][d] / 3 + place[1][d] / 3 + place[2][d] / 3 - corner[d];
+        memcpy(middle, corner, sizeof *torn->middle);
+        ref_chart_walk(chart, middle, way);
+    }
+}
+
 void ref_torn_create(const RefChart *chart, long vertices, long triangles, const int (*triangle)[3],
                      const double (*theta)[2], const double (*rest)[3], RefTornSurface *torn)
 {
@@ -46,30 +73,24 @@ void ref_torn_create(const RefChart *chart, long vertices, long triangles, const
                              .rest = rest,
                              .beside = sm_alloc(count, sizeof *torn->beside),
                              .middle = sm_alloc(count, sizeof *torn->middle),
+                             .place = sm_alloc(count, sizeof *torn->place),
+                             .next = sm_alloc(count, sizeof *torn->next),
                              .corner = sm_alloc(count, sizeof *torn->corner),
                              .crumb = sm_alloc(count, sizeof *torn->crumb),
                              .open = sm_alloc(count, sizeof *torn->open)};
     join(torn);
+    for (long t = 0; t < triangles; t++) find_middle(chart, torn, t);
     for (long t = 0; t < triangles; t++) {
-        const double *first = theta[triangle[t][0]];
         memcpy(torn->corner[t], triangle[t], sizeof *triangle);
+        see_corners(chart, torn, t, torn->middle[t], torn->place[t]);
         for (int k = 0; k < 3; k++) {
-            double image[2];
-            ref_chart_image(chart, theta[triangle[t][k]], first, image);
-            for (int d = 0; d < 2; d++) torn->middle[t][d] += image[d] / 3;
-            torn->open[t][k] = torn->beside[t][k] < 0;
-            torn->open_edges += torn->open[t][k];
+            int beside = torn->beside[t][k];
+            torn->open[t][k] = beside < 0;
+            torn->open_edges += beside < 0;
+            if (beside >= 0)
+                ref_chart_image(chart, torn->middle[beside], torn->middle[t], torn->next[t][k]);
         }
-        ref_chart_enter(chart, torn->middle[t]);
     }
-}
-
-/* Whether a crack is between a triangle's middle and another place. */
-static bool parted(const RefCracked *cracked, const double middle[2], const double place[2])
-{
-    double image[2];
-    ref_chart_image(cracked->cracks.chart, place, middle, image);
-    return ref_cracks_part(&cracked->cracks, middle, image);
 }
 
 /* Pieces of the shell: of its nodes, of cells (SEVERAL: not one alone), of triangles' middles and
@@ -149,7 +170,7 @@ static void part_edges(RefTornSurface *torn, const RefCracked *cracked, const Pi
             bool open = other < 0;
             if (other > t)
                 open = piece[t] != piece[other] ||
-                       parted(cracked, torn->middle[t], torn->middle[other]);
+                       ref_cracks_part(&cracked->cracks, torn->middle[t], torn->next[t][k]);
             else if (other >= 0) /* found from there */
                 for (int n = 0; n < 3; n++)
                     if (torn->beside[other][n] == t) open = torn->open[other][n];
@@ -164,12 +185,15 @@ static int corner_of(const int triangle[3], int vertex)
     return triangle[0] == vertex ? 0 : triangle[1] == vertex ? 1 : 2;
 }
 
-static int add_copy(RefTornSurface *torn, int vertex, const double eye[2])
+/* Of a triangle's corner. */
+static int add_copy(RefTornSurface *torn, long t, int corner)
 {
     sm_make_room(torn->of, torn->room, torn->copies + 1);
     sm_make_room(torn->eye, torn->eye_room, torn->copies + 1);
-    torn->of[torn->copies] = vertex;
-    memcpy(torn->eye[torn->copies], eye, sizeof *torn->eye);
+    sm_make_room(torn->seen, torn->seen_room, torn->copies + 1);
+    torn->of[torn->copies] = torn->whole[t][corner];
+    memcpy(torn->eye[torn->copies], torn->middle[t], sizeof *torn->eye);
+    memcpy(torn->seen[torn->copies], torn->place[t][corner], sizeof *torn->seen);
     return (int)(torn->vertices + torn->copies++);
 }
 
@@ -194,6 +218,24 @@ static void spread(RefTornSurface *torn, long t, int vertex, int as, bool *done)
     }
 }
 
+/* Edges whose ends hold together on both sides have not come apart: a crack is no longer than that.
+ */
+static void close_edges(RefTornSurface *torn)
+{
+    for (long t = 0; t < torn->triangles; t++)
+        for (int k = 0; k < 3; k++) {
+            int other = torn->beside[t][k];
+            bool apart = other < 0 || torn->crumb[t] || torn->crumb[other];
+            for (int e = 0; e < 2 && !apart; e++) {
+                int at = (k + e) % 3, there = corner_of(torn->whole[other], torn->whole[t][at]);
+                apart = torn->corner[t][at] != torn->corner[other][there];
+            }
+            if (apart || !torn->open[t][k]) continue;
+            torn->open[t][k] = false;
+            torn->open_edges--;
+        }
+}
+
 /* First those that see their vertex itself, then copies for the others. */
 bool ref_torn_update(RefTornSurface *torn, const RefCracked *cracked)
 {
@@ -214,11 +256,12 @@ bool ref_torn_update(RefTornSurface *torn, const RefCracked *cracked)
                 if (torn->crumb[t]) torn->corner[t][k] = v;
                 if (torn->crumb[t] || done[3 * t + k]) continue;
                 bool sees = !home[v] && pieces.triangle[t] == pieces.vertex[v] &&
-                            !parted(cracked, torn->middle[t], torn->theta[v]);
+                            !ref_cracks_part(&cracked->cracks, torn->middle[t], torn->place[t][k]);
                 if (pass == 0 && !sees) continue;
-                spread(torn, t, v, pass == 0 ? v : add_copy(torn, v, torn->middle[t]), done);
+                spread(torn, t, v, pass == 0 ? v : add_copy(torn, t, k), done);
                 home[v] = true;
             }
+    close_edges(torn);
     bool changed = memcmp(corner, torn->corner, size * sizeof *corner) != 0 ||
                    memcmp(open, torn->open, size * sizeof *open) != 0;
     sm_free_all(done, home, corner, open);
@@ -256,7 +299,7 @@ static void place_copy(const RefTornSurface *torn, long copy, const RefCracked *
     int v = torn->of[copy];
     double lift;
     memcpy(point, outer[v], 3 * sizeof *point);
-    if (!warp || !ref_cracked_side(cracked, torn->theta[v], torn->eye[copy], shape)) return;
+    if (!warp || !ref_cracked_side(cracked, torn->seen[copy], torn->eye[copy], shape)) return;
     memcpy(point, torn->rest[v], 3 * sizeof *point);
     ref_foot_of(cracked->shell, warp, torn->theta[v], torn->rest[v], shape, &lift);
     for (int n = 0; n < shape->count; n++)

@@ -17,13 +17,17 @@ typedef struct {
     const double (*theta)[2]; /* [vertices] their parameters, in the chart's rectangle, */
     const double (*rest)[3];  /* [vertices] and their places at rest */
     int (*beside)[3];         /* [triangles] the triangle across the edge from corner k on, or -1 */
-    double (*middle)[2];      /* [triangles] where a triangle is in the plane */
-    int (*corner)[3];         /* [triangles] vertices, and behind them copies */
-    bool (*open)[3];          /* [triangles] edges from corner k on along which nothing is */
-    bool *crumb;              /* [triangles] no node moves it: it is not drawn */
-    long copies, room, eye_room;
-    int *of;          /* [copies] the vertex */
-    double (*eye)[2]; /* [copies] where it is seen from */
+    double (*middle)[2];      /* [triangles] where a triangle is, */
+    double (*place)[3][2];    /* [triangles] and where its corners and the middles of those beside
+                                 it are in the plane of that */
+    double (*next)[3][2];
+    int (*corner)[3]; /* [triangles] vertices, and behind them copies */
+    bool (*open)[3];  /* [triangles] edges from corner k on along which nothing is */
+    bool *crumb;      /* [triangles] no node moves it: it is not drawn */
+    long copies, room, eye_room, seen_room;
+    int *of;           /* [copies] the vertex */
+    double (*eye)[2];  /* [copies] where it is seen from, */
+    double (*seen)[2]; /* [copies] and where it is in the plane of that */
     long open_edges, crumbs;
 } RefTornSurface;
 
