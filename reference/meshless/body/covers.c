@@ -1,10 +1,21 @@
 #include "covers.h"
 
-#include <gsl/gsl_sort.h>
 #include <math.h>
 #include <stdlib.h>
 
 #include "../../../lib/vector.h"
+
+/* The numbers of the `wanted` smallest of so many values, at least as many, rising. */
+static void smallest(size_t wanted, const double *value, size_t count, size_t *number)
+{
+    size_t found = 0;
+    for (size_t n = 0; n < count; n++) {
+        if (found == wanted && !(value[n] < value[number[wanted - 1]])) continue;
+        size_t at = found < wanted ? found++ : wanted - 1;
+        for (; at > 0 && !(value[n] > value[number[at - 1]]); at--) number[at] = number[at - 1];
+        number[at] = n;
+    }
+}
 
 /* Makes the covers of the `wanted` nodes nearest to x, of those that it sees, hold it well. */
 static void enlarge(RefNodes *nodes, size_t wanted, const double x[3], double *distance,
@@ -18,7 +29,7 @@ static void enlarge(RefNodes *nodes, size_t wanted, const double x[3], double *d
             distance[n] = fmax(distance[n], fabs(nodes->position[n][d] - x[d]));
         if (!ref_mls_sees(nodes, (long)n, x)) distance[n] = INFINITY;
     }
-    gsl_sort_smallest_index(nearest, wanted, distance, 1, count);
+    smallest(wanted, distance, count, nearest);
     for (size_t k = 0; k < wanted; k++) {
         if (!isfinite(distance[nearest[k]])) break;
         size_t owner = nodes->owner ? (size_t)nodes->owner[nearest[k]] : nearest[k];

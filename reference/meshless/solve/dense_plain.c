@@ -1,8 +1,9 @@
-/* What dense.h is without GSL. */
+/* What dense.h is without GSL, and semidefinite.h without LAPACK. */
 #include <math.h>
 #include <stddef.h>
 
 #include "dense.h"
+#include "semidefinite.h"
 
 bool ref_dense_definite(int n, double *A, double *b)
 {
@@ -57,4 +58,40 @@ bool ref_dense_any(int n, double *A, double *b)
         b[r] /= A[r * width + r];
     }
     return true;
+}
+
+/* A symmetric matrix's entry, in its upper half. */
+static double *entry(int n, double *A, int i, int j)
+{
+    return A + (i < j ? (size_t)i * (size_t)n + (size_t)j : (size_t)j * (size_t)n + (size_t)i);
+}
+
+/* Swaps rows, and columns, p and q; where rows are a factor's, columns alone. */
+static void exchange(int n, double *A, int *order, int p, int q)
+{
+    int kept = order[p];
+    if (p == q) return;
+    order[p] = order[q];
+    order[q] = kept;
+    swap(entry(n, A, p, p), entry(n, A, q, q));
+    for (int r = 0; r < n; r++)
+        if (r != p && r != q) swap(entry(n, A, r, p), entry(n, A, r, q));
+}
+
+int ref_semidefinite(int n, double *A, double tolerance, int *order)
+{
+    for (int i = 0; i < n; i++) order[i] = i;
+    for (int k = 0; k < n; k++) {
+        int most = k;
+        for (int i = k + 1; i < n; i++)
+            if (*entry(n, A, i, i) > *entry(n, A, most, most)) most = i;
+        if (!(*entry(n, A, most, most) > tolerance)) return k;
+        exchange(n, A, order, k, most);
+        double *row = A + (size_t)k * (size_t)n;
+        row[k] = sqrt(row[k]);
+        for (int j = k + 1; j < n; j++) row[j] /= row[k];
+        for (int i = k + 1; i < n; i++)
+            for (int j = i; j < n; j++) *entry(n, A, i, j) -= row[i] * row[j];
+    }
+    return n;
 }

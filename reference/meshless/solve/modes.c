@@ -14,13 +14,6 @@ typedef struct {
     int param[11], pointer[11];
 } Lanczos;
 
-void ref_modes_free(RefModes *modes)
-{
-    free(modes->lambda);
-    free(modes->shape);
-    *modes = (RefModes){0};
-}
-
 /* A little below 0 on the scale of the eigenvalues, which M and K's traces give. */
 double ref_modes_shift(const RefMatrices *matrices)
 {

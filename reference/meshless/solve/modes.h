@@ -2,6 +2,8 @@
 #ifndef REF_MODES_H
 #define REF_MODES_H
 
+#include <stdlib.h>
+
 #include "solver.h"
 
 enum { REF_RIGID_MODES = 6 }; /* of a free body, the lowest ones */
@@ -25,6 +27,12 @@ SmCode ref_modes_find(const RefMatrices *matrices, const RefRows *rows, int coun
 SmCode ref_modes_of(const RefMatrices *matrices, RefSolver *solver, double shift, int count,
                     RefModes *modes, SmError *error);
 double ref_modes_shift(const RefMatrices *matrices);
-void ref_modes_free(RefModes *modes);
+
+static inline void ref_modes_free(RefModes *modes)
+{
+    free(modes->lambda);
+    free(modes->shape);
+    *modes = (RefModes){0};
+}
 
 #endif

@@ -70,8 +70,3 @@ double ref_modes_shift(const RefMatrices *matrices)
     (void)matrices;
     return 0;
 }
-
-void ref_modes_free(RefModes *modes)
-{
-    *modes = (RefModes){0};
-}

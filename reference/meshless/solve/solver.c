@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "semidefinite.h"
+
 const bool ref_solver_built = true;
 
 struct RefSolver {
@@ -15,14 +17,10 @@ struct RefSolver {
     int size, rows, rank;
     RefRows A;
     double *response; /* [rows][size] K'^-1 A^T, row by row */
-    double *S;        /* [rows][rows] Cholesky factor of A K'^-1 A^T, rows as in `order` */
+    double *S;        /* [rows][rows] of A K'^-1 A^T, and its `order` (semidefinite.h) */
     int *order;       /* [rows]; the first `rank` count */
     double *y;        /* [rows] of a solve */
 };
-
-/* LAPACK's Cholesky factorisation with pivots: PA of a semidefinite matrix, its rank. */
-void dpstrf_(const char *half, const int *size, double *matrix, const int *leading, int *pivot,
-             int *rank, const double *tolerance, double *work, int *info);
 
 static void row_of(const RefRows *rows, long row, double *dense)
 {
@@ -103,9 +101,7 @@ static void solve_free(RefSolver *solver, int count, const double *b, double *x)
 static void complement(RefSolver *solver)
 {
     size_t rows = (size_t)solver->rows, size = (size_t)solver->size;
-    double *dense = sm_alloc(size, sizeof *dense), *work = sm_alloc(2 * rows, sizeof *work);
-    double largest = 0;
-    int info = 0;
+    double *dense = sm_alloc(size, sizeof *dense), largest = 0;
     solver->response = sm_alloc(rows * size, sizeof *solver->response);
     solver->S = sm_alloc(rows * rows, sizeof *solver->S);
     solver->order = sm_alloc(rows, sizeof *solver->order);
@@ -120,12 +116,8 @@ static void complement(RefSolver *solver)
             solver->S[r * rows + c] =
                 ref_rows_apply(&solver->A, (long)c, solver->response + r * size);
     for (size_t r = 0; r < rows; r++) largest = fmax(largest, solver->S[r * rows + r]);
-    double tolerance = 1e-10 * largest;
-    dpstrf_("L", &solver->rows, solver->S, &solver->rows, solver->order, &solver->rank, &tolerance,
-            work, &info);
-    for (size_t r = 0; r < rows; r++) solver->order[r]--;
+    solver->rank = ref_semidefinite(solver->rows, solver->S, 1e-10 * largest, solver->order);
     free(dense);
-    free(work);
 }
 
 /* On one thread, as all else here: CHOLMOD itself asks for four, whatever OpenMP's number is. */
