@@ -1,5 +1,6 @@
 # The page's module: what bench/view exports, with all that plays a scene, for WebAssembly. Of bench/ it
-# takes no more than that, and of libraries libconfig's sources, whose folder SHAPEBENCH_VIEW names.
+# takes no more than that, and of libraries the sources of libconfig and of SuiteSparse's CHOLMOD, in the
+# folders of these names in SHAPEBENCH_VIEW. Of CHOLMOD it has what needs no BLAS: simplicial factors.
 
 foreach(header bench/view/view.h bench/view/given.h bench/view/carried.h bench/view/inside.h bench/view/stored_bodies.h)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${header})
@@ -10,8 +11,12 @@ endforeach()
 
 include(scripts/embed.cmake) # builtin.c, papers.c
 set(libconfig grammar libconfig scanctx scanner strbuf)
-list(TRANSFORM libconfig REPLACE "(.+)" "${SHAPEBENCH_VIEW}/lib/\\1.c")
-set_source_files_properties(${libconfig} PROPERTIES COMPILE_OPTIONS -w)
+list(TRANSFORM libconfig REPLACE "(.+)" "${SHAPEBENCH_VIEW}/libconfig/lib/\\1.c")
+set(sparse ${SHAPEBENCH_VIEW}/suitesparse)
+file(GLOB cholmod CONFIGURE_DEPENDS ${sparse}/CHOLMOD/Core/cholmod_*.c ${sparse}/CHOLMOD/Cholesky/cholmod_*.c
+  ${sparse}/AMD/Source/amd_*.c ${sparse}/COLAMD/Source/colamd.c ${sparse}/SuiteSparse_config/SuiteSparse_config.c)
+set_source_files_properties(${libconfig} ${cholmod} PROPERTIES COMPILE_OPTIONS -w
+  COMPILE_DEFINITIONS "NDEBUG;NPRINT;NTIMER;NSUPERNODAL;NPARTITION;NCAMD;NMODIFY;NMATRIXOPS;NCHECK")
 
 sources_of(view_sources bench/view/*.c)
 list(FILTER view_sources EXCLUDE REGEX "/store_body\\.c$")
@@ -23,14 +28,18 @@ foreach(noun scene/scene scene/scene_settings scene/body scene/memory scene/near
   list(APPEND view_sources bench/${noun}.c)
 endforeach()
 
-foreach(noun engine stored elastic_absent body/body body/cylinders body/matrices body/mls body/nodes body/octants
-    body/pairs motion/grip motion/motion motion/rotation motion/skin solve/dense_plain solve/least_squares
-    solve/modes_absent surface/cloud surface/mpu surface/points)
+sources_of(shell_sources reference/meshless/map/*.c reference/meshless/shell/*.c)
+list(APPEND view_sources ${shell_sources})
+foreach(noun engine elastic_absent shell_engine stored body/body body/covers body/cylinders body/gauss_rule
+    body/matrices body/mls body/nodes body/octants body/pairs motion/grip motion/motion motion/rotation motion/skin
+    solve/dense_plain solve/least_squares solve/solver surface/cloud surface/local_triangles surface/mpu
+    surface/points)
   list(APPEND view_sources reference/meshless/${noun}.c)
 endforeach()
 
-add_executable(view ${view_sources} ${libconfig} ${frame_objects})
-target_include_directories(view SYSTEM PRIVATE ${SHAPEBENCH_VIEW}/lib)
+add_executable(view ${view_sources} ${libconfig} ${cholmod} ${frame_objects})
+target_include_directories(view SYSTEM PRIVATE ${SHAPEBENCH_VIEW}/libconfig/lib ${sparse}/CHOLMOD/Include
+  ${sparse}/SuiteSparse_config ${sparse}/AMD/Include ${sparse}/COLAMD/Include)
 target_compile_options(view PRIVATE -ffp-contract=off)
 target_link_libraries(view PRIVATE shapebench_flags shapebench_lib)
 target_link_options(view PRIVATE -mexec-model=reactor -Wl,-z,stack-size=8388608 ${exports})

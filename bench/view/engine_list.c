@@ -1,7 +1,9 @@
-/* engine_list.c - the engines of the page, in single precision; elastic bodies in double. */
+/* engine_list.c - the engines of the page, in single precision; elastic bodies and shells in
+ * double.
+ */
 #include "../../fastlsm/fastlsm.h"
 #include "../../octree/engine.h"
-#include "../../reference/meshless/engine.h"
+#include "../../reference/meshless/shell_engine.h"
 #include "../engines.h"
 #include "../play/body_group.h"
 #include "../scene/memory.h"
@@ -23,7 +25,13 @@ static const BenchEngine elastic = {.type = {&ref_meshless_engine},
                                     .reference = true,
                                     .carrier = &bench_lattice_carrier,
                                     .memory = bench_memory_lattice};
-static const BenchEngine *const list[] = {&lattice, &sampled, &elastic, NULL};
+static const BenchEngine shell = {.type = {&ref_shell_engine},
+                                  .own = BENCH_OF_SHELL,
+                                  .whose = "a shell's",
+                                  .reference = true,
+                                  .carrier = &bench_drawn_carrier,
+                                  .memory = bench_memory_lattice};
+static const BenchEngine *const list[] = {&lattice, &sampled, &elastic, &shell, NULL};
 
 __attribute__((constructor)) static void hand_over(void)
 {

@@ -59,12 +59,52 @@ static void node_place(const ViewSide *side, const RefElastic *elastic, long nod
                side->play.body->pose[0][d][3];
 }
 
+/* Where a shell's surface is now at a place of its parameters, and half of its edges there, of a
+ * piece so wide; at rest, and without edges, where it has no functions. */
+static void shell_place(const ViewSide *side, const double theta[3], const double width[2],
+                        RefShape *shape, double x[3], double half[2][3])
+{
+    const RefShell *shell = &view_side_shell(side)->sheet.shell;
+    const RefWarp *warp = &view_side_shell(side)->sheet.warp;
+    memset(half, 0, sizeof(double[2][3]));
+    memset(x, 0, sizeof(double[3]));
+    if (!ref_shell_shape(shell, theta, shape)) shell->chart.place(shell->chart.data, theta, x);
+    for (int n = 0; n < shape->count; n++)
+        for (int d = 0; d < 3; d++) {
+            double at = warp->X[shape->node[n]][d] + warp->moved[shape->node[n]][d];
+            x[d] += shape->value[n] * at;
+            for (int k = 0; k < 2; k++) half[k][d] += width[k] / 2 * shape->gradient[n][k] * at;
+        }
+    for (int d = 0; d < 3; d++) x[d] += side->play.body->pose[0][d][3];
+}
+
+static void put_shell_nodes(const ViewSide *side, float *point)
+{
+    static const double still[2];
+    const RefNodes *nodes = &view_side_shell(side)->sheet.shell.nodes;
+    RefShape shape = ref_shape_create(nodes);
+    for (long n = 0; n < nodes->count; n++) {
+        double x[3], half[2][3];
+        shell_place(side, nodes->position[n], still, &shape, x, half);
+        narrow((const double(*)[3])x, 1, point + 3 * n);
+    }
+    ref_shape_free(&shape);
+}
+
+/* How many nodes an elastic body or a shell has; 0 of others. */
+static long count_nodes(const ViewSide *side)
+{
+    const RefElastic *elastic = view_side_elastic(side);
+    const RefShellBody *shell = view_side_shell(side);
+    return elastic ? elastic->motion.nodes : shell ? shell->sheet.shell.nodes.count : 0;
+}
+
 int view_particles(int number)
 {
     const ViewSide *side = view_side_of(number);
-    const RefElastic *elastic = side ? view_side_elastic(side) : NULL;
-    if (elastic) return (int)elastic->motion.nodes;
-    return side ? (int)bench_playback_particles(&side->play) : 0;
+    if (!side) return 0;
+    long nodes = count_nodes(side);
+    return (int)(nodes > 0 ? nodes : bench_playback_particles(&side->play));
 }
 
 const float *view_particle_points(int number)
@@ -74,12 +114,14 @@ const float *view_particle_points(int number)
     float *point = make_room(&inside[number].points, view_particles(number), 3 * sizeof *point);
     float *to = point;
     const RefElastic *elastic = view_side_elastic(side);
+    const RefShellBody *shell = view_side_shell(side);
+    if (shell) put_shell_nodes(side, point);
     for (long n = 0; elastic && n < elastic->motion.nodes; n++) {
         double x[3];
         node_place(side, elastic, n, x);
         narrow((const double(*)[3])x, 1, point + 3 * n);
     }
-    for (int g = 0; !elastic && g < side->play.count; g++) {
+    for (int g = 0; !elastic && !shell && g < side->play.count; g++) {
         const BenchGroup *group = &side->play.group[g];
         double(*x)[3] = get_field(group, SM_POSITION);
         narrow((const double(*)[3])x, group->runner.particles, to);
@@ -208,9 +250,38 @@ static void put_cells(const BenchGroup *group, float *cell)
     free(place);
 }
 
+/* Cells of a shell as its functions have them now, as thick as it is; the largest are of level 0.
+ */
+static void put_shell_cells(const ViewSide *side, const RefShellBody *body, float *cell)
+{
+    const RefQuadtree *tree = &body->sheet.shell.tree;
+    RefShape shape = ref_shape_create(&body->sheet.shell.nodes);
+    int largest = 0;
+    for (long c = 0; c < tree->count; c++)
+        if (tree->cell[c].child < 0 && tree->cell[c].size > largest) largest = tree->cell[c].size;
+    for (long c = 0; c < tree->count; c++) {
+        double theta[3] = {0}, width[2], x[3], half[3][3];
+        int level = 0;
+        if (tree->cell[c].child >= 0) continue;
+        ref_quadtree_cell(tree, tree->cell + c, theta, width);
+        shell_place(side, theta, width, &shape, x, half);
+        sm_cross(half[0], half[1], half[2]);
+        sm_normalize(half[2]);
+        for (int d = 0; d < 3; d++) half[2][d] *= body->sheet.options.shell.thickness / 2;
+        narrow((const double(*)[3])x, 1, cell);
+        narrow((const double(*)[3])half, 3, cell + 3);
+        for (int size = tree->cell[c].size; size < largest; size *= 2) level++;
+        cell[VIEW_CELL_NUMBERS - 1] = (float)level;
+        cell += VIEW_CELL_NUMBERS;
+    }
+    ref_shape_free(&shape);
+}
+
 int view_cells(int number)
 {
     const ViewSide *side = view_side_of(number);
+    const RefShellBody *shell = side ? view_side_shell(side) : NULL;
+    if (shell) return (int)shell->sheet.shell.tree.leaves;
     return side && side->play.group[0].skin.octree ? view_particles(number) : 0;
 }
 
@@ -221,7 +292,9 @@ const float *view_cell_frames(int number)
     float *cell =
         make_room(&inside[number].cells, view_cells(number), VIEW_CELL_NUMBERS * sizeof *cell);
     float *to = cell;
-    for (int g = 0; g < side->play.count; g++) {
+    const RefShellBody *shell = view_side_shell(side);
+    if (shell) put_shell_cells(side, shell, cell);
+    for (int g = 0; !shell && g < side->play.count; g++) {
         put_cells(&side->play.group[g], to);
         to += VIEW_CELL_NUMBERS * side->play.group[g].runner.particles;
     }
@@ -376,16 +449,41 @@ static int mark_cover(struct Inside *in, const ViewSide *side, const RefElastic 
     return (int)count;
 }
 
+static int by_number(const void *a, const void *b)
+{
+    const int *p = a, *q = b;
+    return (*p > *q) - (*p < *q);
+}
+
+/* A shell's node: the nodes that move the surface where it stands. */
+static int mark_movers(struct Inside *in, const RefWarp *warp, long p)
+{
+    long count = 0, all = warp->near[p + 1] - warp->near[p];
+    int *other = sm_alloc((size_t)all, sizeof *other);
+    int(*member)[3] = make_room(&in->members, all, sizeof *member);
+    memcpy(other, warp->other + warp->near[p], (size_t)all * sizeof *other);
+    qsort(other, (size_t)all, sizeof *other, by_number);
+    for (long k = 0; k < all; k++) /* one whose image beyond a seam moves it, too, is there twice */
+        if (k == 0 || other[k] != other[k - 1])
+            memcpy(member[count++], (int[3]){other[k]}, sizeof *member);
+    free(other);
+    for (int d = 0; d < 3; d++) in->goal[d] = NAN;
+    in->figure[VIEW_GOAL_CELLS] = NAN;
+    return (int)count;
+}
+
 int view_mark(int number, int particle)
 {
     long first;
     const ViewSide *side = view_side_of(number);
     const RefElastic *elastic = side ? view_side_elastic(side) : NULL;
+    const RefShellBody *shell = side ? view_side_shell(side) : NULL;
     if (number >= 0 && number < VIEW_SIDES)
         memset(inside[number].figure, 0, sizeof inside[number].figure);
-    if (elastic) {
-        bool is = particle >= 0 && particle < elastic->motion.nodes;
-        return is ? mark_cover(&inside[number], side, elastic, particle) : 0;
+    if (elastic || shell) {
+        if (particle < 0 || particle >= count_nodes(side)) return 0;
+        return elastic ? mark_cover(&inside[number], side, elastic, particle)
+                       : mark_movers(&inside[number], &shell->sheet.warp, particle);
     }
     const BenchGroup *group = group_of(side, particle, &first);
     if (!group) return 0;
@@ -437,6 +535,28 @@ static ViewSide *drawn_side(int number)
     return side;
 }
 
+static void carried_at_rest(BenchGroup *group, double (*point)[3], double (*normal)[3])
+{
+    double(*rest)[3] = get_field(group, SM_REST);
+    sm_skin_points(&group->skin, (const double(*)[3])rest, point, normal);
+    free(rest);
+}
+
+/* A surface that the engine draws is drawn at rest, without the pose of its body, which is alone.
+ */
+static void drawn_at_rest(const BenchGroup *group, double (*point)[3], double (*normal)[3])
+{
+    const SmMesh *surface = &group->skin.surface;
+    double(*sums)[3] = sm_mesh_normals(surface, 1);
+    for (long v = 0; v < surface->vertex_count; v++) {
+        for (int d = 0; d < 3; d++)
+            point[v][d] = surface->position[v][d] + group->body.pose[0][d][3];
+        sm_normalize(sums[v]);
+        memcpy(normal[v], sums[v], sizeof normal[v]);
+    }
+    free(sums);
+}
+
 const float *view_rest_points(int number)
 {
     ViewSide *side = drawn_side(number);
@@ -447,10 +567,11 @@ const float *view_rest_points(int number)
     long first = 0;
     for (int g = 0; g < side->play.count; g++) {
         BenchGroup *group = &side->play.group[g];
-        double(*rest)[3] = get_field(group, SM_REST);
-        sm_skin_points(&group->skin, (const double(*)[3])rest, point + first, normal + first);
+        if (group->skin.drawn)
+            drawn_at_rest(group, point, normal);
+        else
+            carried_at_rest(group, point + first, normal + first);
         first += group->body.instances * group->skin.surface.vertex_count;
-        free(rest);
     }
     float *to = make_room(&in->rest_points, side->vertices, 3 * sizeof *to);
     narrow((const double(*)[3])point, side->vertices, to);

@@ -4,10 +4,12 @@
  * steps, changes, opens, or finds the same of the same side. Nothing here changes the motion but
  * for rounding, and that view_mark() alone: the next rotations begin from those of its goals.
  *
- * Places are those now, in mesh units. A side's particles, of the octree and of an elastic body its
- * simulation nodes, are numbered from 0 through all of its bodies; while they run, an octree's
- * numbers change with its cells. An elastic body's node has a cover for a region: it moves what is
- * there (meshless section 3), in one cube, which view_boxes() has as it is turned; and no goal. */
+ * Places are those now, in mesh units. A side's particles, of the octree, of an elastic body and of
+ * a shell its simulation nodes, are numbered from 0 through all of its bodies; while they run, an
+ * octree's numbers change with its cells, and a shell's with its cracks. An elastic body's node has
+ * a cover for a region: it moves what is there (meshless section 3), in one cube, which
+ * view_boxes() has as it is turned; and no goal. A shell's node has for a region the nodes that
+ * move the surface where it stands, and no box. */
 #ifndef BENCH_INSIDE_H
 #define BENCH_INSIDE_H
 
@@ -25,7 +27,8 @@ int view_straight_links(int side);
 
 /* Cells of the octree's leaves, particle by particle, as the surface is carried (octree section 7):
  * [cells][VIEW_CELL_NUMBERS], the middle, from there the way to three faces, and the level, 0 of a
- * base cell. O(edges of the visibility graph). 0 and NULL of other engines. */
+ * base cell. O(edges of the visibility graph). Of a shell the cells of its quadtree on its middle
+ * surface, as thick as it is, the largest of level 0. 0 and NULL of other engines. */
 enum { VIEW_CELL_NUMBERS = 13 };
 int view_cells(int side);
 const float *view_cell_frames(int side);

@@ -19,6 +19,13 @@ RefElastic *view_side_elastic(const ViewSide *side)
     return runner->type == &ref_meshless_engine ? ref_meshless_elastic(runner->engine) : NULL;
 }
 
+RefShellBody *view_side_shell(const ViewSide *side)
+{
+    if (!view_side_is_there(side)) return NULL;
+    const BenchRunner *runner = &side->play.group[0].runner;
+    return runner->type == &ref_shell_engine ? ref_shell_body(runner->engine) : NULL;
+}
+
 /* The scene as this engine can play it. */
 static void suit(BenchScene *scene, const BenchEngine *engine)
 {
@@ -100,11 +107,14 @@ bool view_side_is_whole(const ViewSide *side)
     return true;
 }
 
-/* 0: it plays no elastic body. */
-static long elastic_nodes(const ViewSide *side)
+/* Of an elastic body its nodes, of a shell the numbers of its state; 0: they are no such, or that
+ * cannot be told. */
+static long own_size(const ViewSide *side)
 {
     const RefElastic *elastic = view_side_elastic(side);
-    return elastic ? elastic->motion.nodes : 0;
+    if (elastic) return elastic->motion.nodes;
+    if (!view_side_shell(side)) return 0;
+    return ref_shell_engine.get_state(side->play.group[0].runner.engine, NULL);
 }
 
 bool view_side_is_like(const ViewSide *side, const ViewSide *other)
@@ -112,7 +122,8 @@ bool view_side_is_like(const ViewSide *side, const ViewSide *other)
     if (view_side_is_there(side) != view_side_is_there(other)) return false;
     if (side->scene.instances != other->scene.instances) return false;
     if (strcmp(side->scene.engine, other->scene.engine) != 0) return false;
-    if (elastic_nodes(side) != elastic_nodes(other)) return false;
+    if (own_size(side) != own_size(other)) return false;
+    if (view_side_shell(side) && own_size(side) == 0) return false;
     const ViewSide *both[] = {side, other};
     for (int s = 0; s < 2; s++) /* bodies at rest are all alike */
         for (int g = 0; g < both[s]->play.count; g++)
@@ -145,11 +156,23 @@ static void copy_field(ViewSide *side, const ViewSide *from, SmField field)
     free(all);
 }
 
+static void copy_state(SmEngine *shell, SmEngine *from, long size)
+{
+    double *state = sm_alloc((size_t)size, sizeof *state);
+    ref_shell_engine.get_state(from, state);
+    ref_shell_engine.set_state(shell, state);
+    free(state);
+}
+
 void view_side_go_on(ViewSide *side, const ViewSide *from)
 {
     assert(view_side_is_like(side, from));
+    SmEngine *engine = side->play.group[0].runner.engine,
+             *before = from->play.group[0].runner.engine;
     if (view_side_elastic(side)) {
-        ref_meshless_go_on(side->play.group[0].runner.engine, from->play.group[0].runner.engine);
+        ref_meshless_go_on(engine, before);
+    } else if (view_side_shell(side)) {
+        copy_state(engine, before, own_size(side));
     } else {
         copy_field(side, from, SM_POSITION);
         copy_field(side, from, SM_VELOCITY);
@@ -245,6 +268,21 @@ void view_side_motion(const ViewSide *side, double *energy, double *momentum)
 
 /* ---- the surface */
 
+/* Of a shell that has been drawn as two sheets these are one: the inner's vertices follow the
+ * outer's. */
+static void count_pieces(ViewSide *side)
+{
+    long sheet = side->play.group[0].skin.drawn ? side->vertices / 2 : 0;
+    SmPieces pieces;
+    sm_pieces_init(side->vertices, &pieces);
+    for (long c = 0; c < 3 * side->triangles; c++)
+        sm_pieces_link(&pieces, side->index[c], side->index[c - c % 3]);
+    for (long v = 0; v < sheet; v++) sm_pieces_link(&pieces, v, v + sheet);
+    sm_pieces_finish(&pieces, NULL, side->vertices);
+    side->pieces = pieces.count;
+    sm_pieces_free(&pieces);
+}
+
 static void make_surface(ViewSide *side)
 {
     static int made; /* of any side */
@@ -260,6 +298,7 @@ static void make_surface(ViewSide *side)
     side->normal32 = sm_alloc(3 * vertices, sizeof *side->normal32);
     side->index = sm_alloc(3 * triangles, sizeof *side->index);
     memcpy(side->index, mesh.triangle, triangles * sizeof *mesh.triangle);
+    if (view_side_shell(side)) count_pieces(side);
     sm_mesh_free(&mesh);
 }
 

@@ -3,6 +3,7 @@
 #ifndef BENCH_SIDE_H
 #define BENCH_SIDE_H
 
+#include "../../reference/meshless/shell_engine.h"
 #include "grips.h"
 #include "tools.h"
 
@@ -19,8 +20,8 @@ typedef struct {
     long laps[SM_STAGES];
     double build_seconds;
 
-    int generation; /* of vertices and triangles */
-    long vertices, triangles;
+    int generation;                   /* of vertices and triangles */
+    long vertices, triangles, pieces; /* of a shell alone it is asked in how many it is */
     double (*place)[3], (*normal)[3]; /* [vertices] scratch */
     float *point32, *normal32;        /* [vertices][3] */
     int *index;                       /* [triangles][3] */
@@ -39,8 +40,9 @@ void view_side_push_as(ViewSide *side, const ViewSide *own);
 
 bool view_side_is_there(const ViewSide *side);
 
-/* The elastic body that the side plays; NULL: it plays no such. */
+/* The elastic body or the shell that the side plays; NULL: it plays no such. */
 RefElastic *view_side_elastic(const ViewSide *side);
+RefShellBody *view_side_shell(const ViewSide *side);
 
 /* The side of this number (view.h) if it is open and there, or NULL. */
 ViewSide *view_side_of(int number);
@@ -48,7 +50,8 @@ ViewSide *view_side_of(int number);
 /* May another side go on where this one is? Not where material has been cut or has broken. */
 bool view_side_is_whole(const ViewSide *side);
 
-/* Has it bodies of as many particles and nodes as another side, of the same engine? */
+/* Has it bodies of as many particles and nodes as another side, of the same engine? A shell that
+ * may break is like no other: where it is cannot be told to one. */
 bool view_side_is_like(const ViewSide *side, const ViewSide *other);
 
 /* Positions, velocities and time of another side that it is like. */

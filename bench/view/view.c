@@ -145,6 +145,21 @@ static SmCode check_surface(const BenchScene *scene, const SmMesh *mesh, SmError
                    triangles, scene->instances);
 }
 
+/* A lattice, which is not made yet, weighs what the shell does that is beside it, unless the scene
+ * says what. */
+static void weigh_as(const ViewSide *shell, BenchBody *body)
+{
+    if (!view_side_shell(shell) || body->mass) return;
+    const BenchRunner *runner = &shell->play.group[0].runner;
+    double *mass = sm_alloc((size_t)runner->count, sizeof *mass), all = 0;
+    runner->type->masses(runner->engine, mass);
+    for (long p = 0; p < runner->count; p++) all += mass[p];
+    free(mass);
+    body->mass = sm_alloc((size_t)body->voxels.particle_count, sizeof *body->mass);
+    for (long p = 0; p < body->voxels.particle_count; p++)
+        body->mass[p] = all / (double)body->voxels.particle_count;
+}
+
 /* Of the program's shapes, or of the mesh that was given. A page takes fewer particles rather than
  * none where so many take too large a lattice. */
 static SmCode make_body(BenchScene *scene, BenchBody *body, SmError *error)
@@ -177,17 +192,19 @@ int view_open(int bytes, int keep)
     const ViewAllowed *allowed = keep ? &view.allowed : &nothing;
     BenchBody *body = sm_alloc(1, sizeof *body);
     ViewSide *side[VIEW_SIDES] = {NULL, NULL};
-    bool elastic = bench_engine(scene.engine)->own == BENCH_OF_ELASTIC;
-    const char *const engine[VIEW_SIDES] = {"fastlsm", elastic ? scene.engine : "octree"};
+    unsigned own_kind = bench_engine(scene.engine)->own;
+    bool elastic = own_kind == BENCH_OF_ELASTIC, shell = own_kind == BENCH_OF_SHELL;
+    const char *const engine[VIEW_SIDES] = {"fastlsm", elastic || shell ? scene.engine : "octree"};
     if (elastic && scene.density == 0) /* as heavy on both sides */
         scene.density = scene.meshless.material.density / pow(scene.metre, 3);
     if (make_body(&scene, body, &error)) {
         free(body);
         return refuse(&error);
     }
-    for (int s = 0; s < VIEW_SIDES; s++) {
+    for (int s = VIEW_SIDES - 1; s >= 0; s--) {
         side[s] = sm_alloc(1, sizeof *side[s]);
         view_side_create(&scene, body, engine[s], allowed, side[s]);
+        weigh_as(side[s], body);
     }
     int own = strcmp(scene.engine, engine[VIEW_OTHER]) == 0 ? VIEW_OTHER : VIEW_LATTICE;
     view_side_push_as(side[!own], side[own]);
@@ -230,7 +247,9 @@ static double counted(const ViewSide *side, int figure)
 {
     double sum = 0, mean = 0;
     const RefElastic *elastic = view_side_elastic(side);
+    const RefShellBody *shell = view_side_shell(side);
     if (elastic && figure == VIEW_PARTICLES) return (double)elastic->motion.nodes;
+    if (shell && figure == VIEW_PARTICLES) return (double)shell->sheet.warp.nodes;
     for (int g = 0; g < side->play.count; g++) {
         SmCounts counts;
         const BenchRunner *runner = &side->play.group[g].runner;
@@ -271,6 +290,8 @@ double view_figure(int number, int figure)
         return side->scene.params.h;
     case VIEW_STEPS_PER_FRAME:
         return side->scene.steps_per_frame;
+    case VIEW_PIECES:
+        return view_side_shell(side) ? (double)side->pieces : NAN;
     default:
         return counted(side, figure);
     }

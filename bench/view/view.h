@@ -2,9 +2,9 @@
  * side by side, and pulled by hand in both.
  *
  * The page calls these by number and pointer (WebAssembly knows no structs): a side is 0, FastLSM,
- * or 1, the octree; of a scene for the meshless engine 1 is that. Pointers stay valid until the
- * next call that steps, changes or opens. Nothing here aborts on what a user types: view_open()
- * says what is wrong. */
+ * or 1, the octree; of a scene for the engine meshless or shell 1 is that. Pointers stay valid
+ * until the next call that steps, changes or opens. Nothing here aborts on what a user types:
+ * view_open() says what is wrong. */
 #ifndef BENCH_VIEW_H
 #define BENCH_VIEW_H
 
@@ -38,7 +38,7 @@ void view_step(int side, int steps);
 
 /* Figures of a side. */
 enum {
-    VIEW_PARTICLES, /* of the octree and of an elastic body simulation nodes */
+    VIEW_PARTICLES, /* of the octree, of an elastic body and of a shell simulation nodes */
     VIEW_REGIONS,
     VIEW_LINKS, /* of FastLSM */
     VIEW_BROKEN,
@@ -53,6 +53,7 @@ enum {
     VIEW_CELL,     /* edge of a finest cell */
     VIEW_H,        /* time step, s */
     VIEW_STEPS_PER_FRAME,
+    VIEW_PIECES, /* that a shell was in when its surface was last found; NaN of others */
     VIEW_FIGURES
 };
 double view_figure(int side, int figure);

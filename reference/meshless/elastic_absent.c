@@ -1,5 +1,5 @@
-/* What elastic.h, motion/grip_modes.h and cracks of solids are without the libraries that find
- * modes: a body that cracks gets others. */
+/* What elastic.h, motion/grip_modes.h, solve/modes.h and cracks of solids are without the library
+ * that finds modes: a body that cracks gets others. */
 #include <stdlib.h>
 
 #include "body/cracked_body.h"
@@ -24,6 +24,14 @@ SmCode ref_elastic_body(const RefMeshlessOptions *options, bool cuttable, long *
 SmCode ref_elastic_modes(const RefMeshlessOptions *options, RefElastic *elastic, SmError *error)
 {
     (void)options, (void)elastic;
+    return absent(error);
+}
+
+SmCode ref_modes_find(const RefMatrices *matrices, const RefRows *rows, int count, RefModes *modes,
+                      SmError *error)
+{
+    (void)matrices, (void)rows, (void)count;
+    *modes = (RefModes){0};
     return absent(error);
 }
 

@@ -6,6 +6,7 @@ import { Hands } from 'view/hands';
 import { Inside } from 'view/inside';
 import { Meter } from 'view/meter';
 import { Panel } from 'view/panel';
+import { getString } from 'view/scene_text';
 import { copyWithCaptions, packScene, saveFile, unpackScene } from 'view/share';
 import { findStage } from 'view/shapes';
 import { Tools } from 'view/tools';
@@ -52,7 +53,8 @@ export class App {
 
     async openNow(text, keep) {
         this.busy = true;
-        this.say('Building …');
+        this.say(getString(text, 'engine') === 'shell'
+            ? 'Building: a shell\u2019s surface is mapped to a plane, which takes seconds …' : 'Building …');
         await nextPaint();
         let refused;
         try {

@@ -4,11 +4,12 @@
     build.py WASM OUT.html SCENE_TEXT_FILE MESH_FILE [BODY_FILE...]
 
 The page opens with that scene and its mesh, or drops a mesh alone; '' stands for none. It carries these elastic
-bodies (bench/view/store_body.c). It runs from file://, where
+bodies (bench/view/store_body.c), and the licences of what is in it, which are beside WASM. It runs from file://, where
 modules cannot import each other by path: each is a data: URL with a name in the import map."""
 import base64
 import contextlib
 import gzip
+import html
 import json
 import os
 import pathlib
@@ -16,6 +17,7 @@ import re
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
+LICENCES = ('libconfig/COPYING.LIB', 'suitesparse/AMD/Doc/License.txt', 'suitesparse/COLAMD/Doc/License.txt')
 
 
 def encode(data):
@@ -31,7 +33,7 @@ def as_json(value):
     return json.dumps(value, ensure_ascii=False).replace('<', '\\u003c')
 
 
-def build(wasm, scene, mesh, bodies):
+def build(wasm, scene, mesh, bodies, licences):
     modules = {f'view/{path.stem}': f'data:text/javascript;base64,{encode(path.read_bytes())}'
                for path in sorted(HERE.glob('*.js'))}
     shaders = {path.name: path.read_text() for path in sorted(HERE.iterdir())
@@ -41,6 +43,7 @@ def build(wasm, scene, mesh, bodies):
         '@IMPORTS@': as_json({'imports': modules}),
         '@DATA@': as_json({'shaders': shaders, 'scene': scene, 'mesh': mesh,
                            'bodies': bodies}),
+        '@LICENCES@': html.escape('\n\n'.join(licences)),
         '@WASM@': pack(wasm),
     }
     page = (HERE / 'page.html').read_text(encoding='utf-8')
@@ -72,7 +75,10 @@ def main(arguments):
     wasm, out = pathlib.Path(arguments[0]), pathlib.Path(arguments[1])
     scene = read(arguments[2], lambda path: path.read_text(encoding='utf-8'))
     mesh = read(arguments[3], read_mesh)
-    page = build(wasm.read_bytes(), scene, mesh, [read(path, read_body) for path in arguments[4:]])
+    bodies = [read(path, read_body) for path in arguments[4:]]
+    texts = [HERE.parents[1] / 'LICENSE', *(wasm.parent / name for name in LICENCES)]
+    licences = [read(path, lambda at: at.read_text(encoding='utf-8').strip()) for path in texts]
+    page = build(wasm.read_bytes(), scene, mesh, bodies, licences)
     new = f'{out}.{os.getpid()}.tmp'
     try:
         pathlib.Path(new).write_text(page, encoding='utf-8')

@@ -1,13 +1,13 @@
 // engine.js - the engines in WebAssembly (bench/view/view.h): what they import, their strings, and their
-// numbers as arrays. A side is 0, FastLSM, or 1, the octree or, where the scene is of one, an elastic body.
+// numbers as arrays. A side is 0, FastLSM, or 1, the octree or, where the scene is of one, an elastic body or a shell.
 import { Given } from 'view/given';
 
-const NAMES = { fastlsm: 'FastLSM', octree: 'Octree', meshless: 'Elastic body' };
+const NAMES = { fastlsm: 'FastLSM', octree: 'Octree', meshless: 'Elastic body', shell: 'Shell' };
 export const [ELASTIC, ABSENT] = [1, 2]; // of what a scene's text is (bench/view/stored_bodies.h)
 export const STAGES = ['fast sum', 'shape matching', 'polar', 'damping', 'other'];
 const FIGURES = [
     'particles', 'regions', 'links', 'broken', 'contacts', 'summationNodes', 'bytes', 'buildMs', 'time',
-    'steps', 'kinetic', 'momentum', 'cell', 'h', 'stepsPerFrame',
+    'steps', 'kinetic', 'momentum', 'cell', 'h', 'stepsPerFrame', 'pieces',
 ];
 const OBSTACLES = ['plane', 'sphere', 'box', 'capsule'];
 const CARRIED_ROW = 2048; // VIEW_ROW

@@ -187,6 +187,8 @@ export class Inside {
     describe(side, mark) {
         if (this.app.engine.kind(side) === 'meshless')
             return `Node ${mark.particle}: it moves what is in its cover, where ${mark.count} nodes stand`;
+        if (this.app.engine.kind(side) === 'shell')
+            return `Node ${mark.particle}: ${mark.count} nodes move the surface where it stands`;
         const [one, many] = side ? ['Node', 'nodes'] : ['Particle', 'particles'];
         let sums = `${mark.bars} bars in ${mark.plates} plates`;
         if (mark.nodes) sums = `${mark.nodes} summation nodes`;

@@ -1,6 +1,6 @@
 // knobs.js - what the page's knobs are: each changes one setting of the scene's text.
 import {
-    asReal, getNumbers, getSetting, removeSetting, setSetting,
+    asReal, getNumber, getNumbers, getSetting, getString, removeSetting, setSetting,
 } from 'view/scene_text';
 
 // Where an octree's cells are split, as settings of its scene. The body stands on y = 0 in most.
@@ -57,7 +57,35 @@ function getUpper(text) {
     return edges ? Number(edges[1]) : undefined;
 }
 
-// Sliders: `log` ones move by powers of ten; those of an `engine` are there where that is. `get` and `set` where it is not the plain setting `key`.
+// What is beside FastLSM: 'octree', unless the scene is of another engine.
+function getBeside(text) {
+    const engine = getString(text, 'engine') ?? 'fastlsm';
+    return engine === 'fastlsm' ? 'octree' : engine;
+}
+
+// A shell that nothing holds is held at its foot, as `shapebench run MESH --engine shell` has it: no ground
+// stops it. A mesh of one's own stands for a body a metre tall.
+function setBeside(text, value, app) {
+    if (value !== 'shell') {
+        const engine = getString(app.original ?? '', 'engine');
+        return setSetting(text, 'engine', engine === value ? `"${value}"` : '"fastlsm"');
+    }
+    let held = setSetting(text, 'engine', '"shell"');
+    if (!getSetting(held, 'handles'))
+        held = setSetting(removeSetting(held, 'planes'), 'handles', '( { box_high = [1.0, 0.1, 1.0]; } )');
+    const { low, high } = app.engine.bounds();
+    const own = !(getString(held, 'mesh') ?? '').startsWith('shape:');
+    return own && !getSetting(held, 'meshless.metre')
+        ? setSetting(held, 'meshless.metre', asReal(high[1] - low[1])) : held;
+}
+
+const longest = (app) => {
+    const { low, high } = app.engine.bounds();
+    return Math.max(...high.map((x, d) => x - low[d]));
+};
+const UNBROKEN = 1e8; // Pa: the end of a slider
+
+// Sliders: `log` ones move by powers of ten; those of an `engine`, or of several, are there where that is. `get` and `set` where it is not the plain setting `key`.
 export const SLIDERS = [
     { key: 'w', label: 'w, half-width of regions', least: 1, most: 8, by: 1, whole: true, start: 2 },
     { key: 'damping', label: 'Damping', least: 0, most: 1, by: 0.01, start: 0 },
@@ -74,8 +102,18 @@ export const SLIDERS = [
             const [x, , z] = getNumbers(text, 'gravity') ?? [0, 0, 0];
             return setSetting(text, 'gravity', `[${asReal(x)}, ${value}, ${asReal(z)}]`);
         } },
-    { key: 'meshless.young', engine: 'meshless', label: 'Elastic: Young\u2019s modulus, Pa', least: 1e4, most: 1e8,
-        log: true, start: 1e5 },
+    { key: 'meshless.young', engine: ['meshless', 'shell'], label: 'Elastic: Young\u2019s modulus, Pa', least: 1e4,
+        most: 1e8, log: true, start: 1e5 },
+    { key: 'meshless.thickness', engine: 'shell', label: 'Shell: thickness, share of its length', least: 0.001,
+        most: 0.05, log: true, start: 0.01,
+        get: (text, app) => getNumber(text, 'meshless.thickness') / longest(app) || undefined,
+        set: (text, value, app) => setSetting(text, 'meshless.thickness', asReal(value * longest(app))) },
+    { key: 'meshless.nodes', engine: 'shell', label: 'Shell: nodes wanted', least: 50, most: 2000, log: true,
+        whole: true, start: 450 },
+    { key: 'meshless.strength', engine: 'shell', label: 'Shell: it cracks from this stress on, Pa', least: 1e3,
+        most: UNBROKEN, log: true, hint: 'never', otherwise: UNBROKEN,
+        set: (text, value) => (value < UNBROKEN ? setSetting(text, 'meshless.strength', value)
+            : removeSetting(text, 'meshless.strength')) },
     { key: 'epsilon', engine: 'octree', label: 'Octree: epsilon', least: 0, most: 2, by: 0.05, start: 0.5 },
     { key: 'octree.levels', engine: 'octree', label: 'Octree: levels', least: 1, most: 6, by: 1, whole: true,
         hint: 'not set: up to 4', otherwise: 4 },
@@ -84,6 +122,7 @@ export const SLIDERS = [
         get: getUpper },
 ];
 export const CHOICES = [
+    { key: 'engine', label: 'Beside FastLSM', of: ['octree', 'shell'], get: getBeside, set: setBeside },
     { key: 'octree.weighting', engine: 'octree', label: 'Octree: weighting', of: ['conserving', 'plain'] },
     { key: 'octree.criteria', engine: 'octree', label: 'Octree: cells split', of: Object.keys(SPLITS),
         get: getSplits, set: setSplits },

@@ -2,6 +2,7 @@
 import { App } from 'view/app';
 import { ABSENT, ELASTIC, Engine } from 'view/engine';
 import { Files } from 'view/files';
+import { getString } from 'view/scene_text';
 import { fromBase64, saveFile, unzip } from 'view/share';
 
 const FIRST_SCENE = 'hand';
@@ -11,7 +12,8 @@ const WHAT = { [ELASTIC]: ' (elastic body)', [ABSENT]: ' (elastic body, not in t
 
 function wire(app) {
     const { engine } = app;
-    const label = (name) => name + (WHAT[engine.elastic(engine.sceneText(name))] ?? '');
+    const what = (text) => WHAT[engine.elastic(text)] ?? (getString(text, 'engine') === 'shell' ? ' (shell)' : '');
+    const label = (name) => name + what(engine.sceneText(name));
     $('scene').append(new Option('(own text)', ''),
         ...engine.sceneNames().map((name) => new Option(label(name), name, false)));
     $('scene').options[0].disabled = true;

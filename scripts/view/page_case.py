@@ -115,3 +115,34 @@ for (let i = 0; i < values[0]; i++) {
 held.forEach((grip) => e.release(grip));
 return [0, 1].every((side) => e.surface(side).points.every(Number.isFinite));
 """
+
+# The scene's text when it is another one, or null after a while.
+CHANGED = """
+for (let i = 0; i < 100 && (shapebench.text() === values[0] || shapebench.busy()); i++)
+    await new Promise((done) => setTimeout(done, 30));
+shapebench.pause();
+return shapebench.text() === values[0] ? null : shapebench.text();
+"""
+
+# Each side's share of 300 vertices that are drawn in its colour, within a pixel, of those in its view.
+LOOK = """
+const canvas = document.getElementById('canvas'), gl = canvas.getContext('webgl2');
+const shares = {}, pixel = new Uint8Array(36), whole = canvas.getBoundingClientRect();
+shapebench.advance(1);
+for (const side of shapebench.engine.present()) {
+    const box = document.getElementById(`view-${side}`).getBoundingClientRect();
+    const scale = canvas.width / whole.width, count = shapebench.engine.surface(side).points.length / 3;
+    let seen = 0, hit = 0;
+    for (let i = 0; i < 300; i++) {
+        const at = shapebench.project(side, Math.floor(i * count / 300));
+        const x = at.x - (box.left - whole.left) * scale, y = at.y - (box.top - whole.top) * scale;
+        if (!(x > 2 && y > 2 && x < box.width * scale - 2 && y < box.height * scale - 2)) continue;
+        gl.readPixels(Math.round(at.x) - 1, Math.round(canvas.height - at.y) - 1, 3, 3, gl.RGBA,
+            gl.UNSIGNED_BYTE, pixel);
+        seen++;
+        hit += [...Array(9).keys()].some((n) => Math.abs(pixel[4 * n] - pixel[4 * n + 2]) > 40);
+    }
+    shares[side] = [seen, hit];
+}
+return shares;
+"""

@@ -12,7 +12,7 @@ const FIGURES = [
     ['ms a frame: its steps, surface', (m) => m.frameMs],
     ['Particles', 'particles'], ['Regions', 'regions'], ['Links', 'links', ['fastlsm']],
     ['Summation nodes a region', 'summationNodes', ['octree']], ['Contacts', 'contacts', ['fastlsm', 'octree']],
-    ['Time simulated, s', 'time'], ['Kinetic energy, J', 'kinetic'], ['Momentum, kg·m/s', 'momentum'],
+    ['Pieces', 'pieces', ['shell']], ['Time simulated, s', 'time'], ['Kinetic energy, J', 'kinetic'], ['Momentum, kg·m/s', 'momentum'],
 ];
 
 function make(tag, values, ...children) {
@@ -71,7 +71,7 @@ class Slider extends Knob {
 
     fill(text) {
         const { get = (all) => getNumber(all, this.what.key), start, log, hint, otherwise } = this.what;
-        const given = get(text);
+        const given = get(text, this.panel.app);
         const value = given ?? start ?? (hint ? otherwise : this.panel.particles());
         if (this.what.open) { // bodies of other units want other values
             const { least, most, by } = this.what;
@@ -94,7 +94,7 @@ class Choice extends Knob {
 
     fill(text) {
         const { get = (all) => getString(all, this.what.key) ?? this.what.of[0], of } = this.what;
-        const value = get(text);
+        const value = get(text, this.panel.app);
         const names = [...this.input.options].map((option) => option.value);
         if (!names.includes(value)) this.input.add(new Option(value));
         if (of.includes(value)) [...this.input.options].slice(of.length).forEach((option) => option.remove());
@@ -141,7 +141,8 @@ export class Panel {
     fill() {
         const kinds = [0, 1].map((side) => this.app.engine.kind(side));
         for (const knob of this.knobs) {
-            knob.element.hidden = knob.what.engine !== undefined && !kinds.includes(knob.what.engine);
+            const { engine = kinds } = knob.what;
+            knob.element.hidden = !kinds.some((kind) => engine.includes(kind));
             knob.fill(this.text);
         }
         if (document.activeElement !== this.box) this.box.value = this.text;

@@ -7,7 +7,7 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import Select
 
-from page_case import GESTURES, SETTLE, SIDES, WHERE, PageCase
+from page_case import CHANGED, GESTURES, SETTLE, SIDES, WHERE, PageCase
 
 # The elastic beam, whose end stays where it is.
 STILL = "return shapebench.engine.sceneText('beam-elastic').replace('amplitude = 1.0', 'amplitude = 0.0')"
@@ -219,11 +219,3 @@ class Elastic(PageCase):
         for side in (0, 1):
             energy, momentum = self.figure(side, "kinetic"), self.figure(side, "momentum")
             self.assertTrue(0 < momentum ** 2 <= 2 * 1.05 * mass * energy, SIDES[side])  # Cauchy and Schwarz
-
-
-CHANGED = """
-for (let i = 0; i < 100 && (shapebench.text() === values[0] || shapebench.busy()); i++)
-    await new Promise((done) => setTimeout(done, 30));
-shapebench.pause();
-return shapebench.text() === values[0] ? null : shapebench.text();
-"""

@@ -10,7 +10,7 @@ import numpy
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.keys import Keys
 
-from page_case import GESTURES, PROGRAM, SETTLE, SIDES, WHERE, PageCase
+from page_case import CHANGED, GESTURES, LOOK, PROGRAM, SETTLE, SIDES, WHERE, PageCase
 
 SCENES = ("hand-lattice", "hand-sampled", "penguin", "infant-bones", "liver", "flowers", "beam", "statue-shell",
           "penguins-collide", "beam-elastic", "balljoint")
@@ -185,39 +185,10 @@ class Page(PageCase):
         refused = self.ask("return shapebench.open(shapebench.text().replace('w = 2', 'w = 99'), true)")
         self.assertIn("'w' must be", refused)
 
-# The scene's text when it is another one, or null after a while.
-CHANGED = """
-for (let i = 0; i < 100 && (shapebench.text() === values[0] || shapebench.busy()); i++)
-    await new Promise((done) => setTimeout(done, 30));
-shapebench.pause();
-return shapebench.text() === values[0] ? null : shapebench.text();
-"""
+
 BLOCK = """
 mesh = "shape:block"; particles = 700; w = 2; damping = 0.3; octree = { levels = 1; };
 handles = ( { box_low = [0.0, 0.0, 0.0]; box_high = [1.0, 0.2, 1.0]; } );
 """
 SET = "return (await import('view/scene_text')).setSetting(...values)"
 GET = "return (await import('view/scene_text')).getNumber(...values)"
-
-# Each side's share of 300 vertices that are drawn in its colour, within a pixel, of those in its view.
-LOOK = """
-const canvas = document.getElementById('canvas'), gl = canvas.getContext('webgl2');
-const shares = {}, pixel = new Uint8Array(36), whole = canvas.getBoundingClientRect();
-shapebench.advance(1);
-for (const side of shapebench.engine.present()) {
-    const box = document.getElementById(`view-${side}`).getBoundingClientRect();
-    const scale = canvas.width / whole.width, count = shapebench.engine.surface(side).points.length / 3;
-    let seen = 0, hit = 0;
-    for (let i = 0; i < 300; i++) {
-        const at = shapebench.project(side, Math.floor(i * count / 300));
-        const x = at.x - (box.left - whole.left) * scale, y = at.y - (box.top - whole.top) * scale;
-        if (!(x > 2 && y > 2 && x < box.width * scale - 2 && y < box.height * scale - 2)) continue;
-        gl.readPixels(Math.round(at.x) - 1, Math.round(canvas.height - at.y) - 1, 3, 3, gl.RGBA,
-            gl.UNSIGNED_BYTE, pixel);
-        seen++;
-        hit += [...Array(9).keys()].some((n) => Math.abs(pixel[4 * n] - pixel[4 * n + 2]) > 40);
-    }
-    shares[side] = [seen, hit];
-}
-return shares;
-"""

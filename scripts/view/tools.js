@@ -9,7 +9,10 @@ const FINGER = 3; // radius, finest cells
 const START = 0.02; // half heights that a stroke must go before it cuts
 
 const MINCED = 'It has been cut into so much that another cut would take seconds: Reset makes it whole.';
-const WHOLE = 'FastLSM alone is cut: the elastic body moves by the modes of the whole.';
+const WHOLE = {
+    meshless: 'FastLSM alone is cut: the elastic body moves by the modes of the whole.',
+    shell: 'FastLSM alone is cut: a shell cracks where its stress is above its strength.',
+};
 const REFUSALS = {
     cut: 'Only a body that is alone can be cut: open a scene of one body, such as the liver.',
     touch: 'There is no octree here that could be refined where it is touched.',
@@ -28,10 +31,11 @@ export class Tools {
         if (name !== this.name) this.app.hands.endAll();
         this.name = name;
         if (name === 'cut' && this.app.text) await this.allowCut();
-        if (name === 'cut' && this.app.engine.kind(1) === 'meshless') this.app.say(WHOLE);
+        const whole = WHOLE[this.app.engine.kind(1)];
+        if (name === 'cut' && whole) this.app.say(whole);
     }
 
-    // Another scene is open: of an elastic body nothing gets finer by a touch.
+    // Another scene is open: of an elastic body and of a shell nothing gets finer by a touch.
     opened() {
         const [pull, touch] = ['pull', 'touch'].map((name) => document.querySelector(`#tools [value=${name}]`));
         touch.disabled = this.app.engine.kind(1) !== 'octree';
