@@ -63,6 +63,9 @@ function getBeside(text) {
     return engine === 'fastlsm' ? 'octree' : engine;
 }
 
+// What a shell does not take of a scene.
+const NOT_OF_SHELLS = ['bend', 'twist', 'squash', 'kick', 'cuts', 'planes', 'spheres', 'boxes', 'capsules'];
+
 // A shell that nothing holds is held at its foot, as `shapebench run MESH --engine shell` has it: no ground
 // stops it. A mesh of one's own stands for a body a metre tall.
 function setBeside(text, value, app) {
@@ -70,9 +73,8 @@ function setBeside(text, value, app) {
         const engine = getString(app.original ?? '', 'engine');
         return setSetting(text, 'engine', engine === value ? `"${value}"` : '"fastlsm"');
     }
-    let held = setSetting(text, 'engine', '"shell"');
-    if (!getSetting(held, 'handles'))
-        held = setSetting(removeSetting(held, 'planes'), 'handles', '( { box_high = [1.0, 0.1, 1.0]; } )');
+    let held = setSetting(NOT_OF_SHELLS.reduce(removeSetting, text), 'engine', '"shell"');
+    if (!getSetting(held, 'handles')) held = setSetting(held, 'handles', '( { box_high = [1.0, 0.1, 1.0]; } )');
     const { low, high } = app.engine.bounds();
     const own = !(getString(held, 'mesh') ?? '').startsWith('shape:');
     return own && !getSetting(held, 'meshless.metre')
@@ -122,10 +124,10 @@ export const SLIDERS = [
         get: getUpper },
 ];
 export const CHOICES = [
-    { key: 'engine', label: 'Beside FastLSM', of: ['octree', 'shell'], get: getBeside, set: setBeside },
     { key: 'octree.weighting', engine: 'octree', label: 'Octree: weighting', of: ['conserving', 'plain'] },
     { key: 'octree.criteria', engine: 'octree', label: 'Octree: cells split', of: Object.keys(SPLITS),
         get: getSplits, set: setSplits },
     { key: 'summation', label: 'Summation', of: ['fast', 'bars', 'naive'] },
     { key: 'polar', label: 'Polar', of: ['fast', 'jacobi'] },
+    { key: 'engine', label: 'Beside FastLSM', of: ['octree', 'shell'], get: getBeside, set: setBeside },
 ];

@@ -13,7 +13,7 @@ from selenium.webdriver.common.keys import Keys
 from page_case import CHANGED, GESTURES, LOOK, PROGRAM, SETTLE, SIDES, WHERE, PageCase
 
 SCENES = ("hand-lattice", "hand-sampled", "penguin", "infant-bones", "liver", "flowers", "beam", "statue-shell",
-          "penguins-collide", "beam-elastic", "balljoint")
+          "penguins-collide", "beam-elastic", "balljoint", "rockerarm")
 
 
 class Page(PageCase):

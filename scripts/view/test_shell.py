@@ -183,6 +183,15 @@ class Shell(PageCase):
         self.choose("octree")
         self.assertEqual(self.ask("return shapebench.engine.kind(1)"), "octree")
 
+    def test_a_scene_of_another_engine(self):
+        """Both are without what a shell does not take."""
+        self.open("hand")
+        self.assertIn("bend", self.ask("return shapebench.text()"))
+        self.assertNotIn("bend", self.choose("shell"))
+        self.assertEqual(self.ask("return [0, 1].map((side) => shapebench.engine.absent(side))"), ["", ""])
+        self.ask("shapebench.advance(5)")
+        self.assertTrue(math.isfinite(self.figure(1, "kinetic")))
+
     def test_a_mesh_without_a_map_is_said_to_have_none(self):
         self.drop("open.obj", torus(left_out=5))
         self.choose("shell")
