@@ -268,19 +268,24 @@ void view_side_motion(const ViewSide *side, double *energy, double *momentum)
 
 /* ---- the surface */
 
-/* Of a shell that has been drawn as two sheets these are one: the inner's vertices follow the
- * outer's. */
+/* What triangles hang together, and of a shell that is drawn as two sheets both: the inner one's
+ * vertices follow the outer one's. */
 static void count_pieces(ViewSide *side)
 {
     long sheet = side->play.group[0].skin.drawn ? side->vertices / 2 : 0;
+    unsigned char *absent = sm_alloc((size_t)side->vertices, 1);
     SmPieces pieces;
     sm_pieces_init(side->vertices, &pieces);
-    for (long c = 0; c < 3 * side->triangles; c++)
+    memset(absent, 1, (size_t)side->vertices);
+    for (long c = 0; c < 3 * side->triangles; c++) {
         sm_pieces_link(&pieces, side->index[c], side->index[c - c % 3]);
+        absent[side->index[c]] = 0;
+    }
     for (long v = 0; v < sheet; v++) sm_pieces_link(&pieces, v, v + sheet);
-    sm_pieces_finish(&pieces, NULL, side->vertices);
+    sm_pieces_finish(&pieces, absent, side->vertices);
     side->pieces = pieces.count;
     sm_pieces_free(&pieces);
+    free(absent);
 }
 
 static void make_surface(ViewSide *side)

@@ -150,6 +150,7 @@ static long flooded(void)
     const int *corner = view_indices(1);
     size_t vertices = (size_t)view_vertices(1);
     int *least = sm_alloc(vertices, sizeof *least);
+    bool *used = sm_alloc(vertices, sizeof *used);
     long pieces = 0;
     for (size_t v = 0; v < vertices; v++) least[v] = (int)v;
     for (bool changed = true; changed;) {
@@ -164,8 +165,10 @@ static long flooded(void)
             least[v] = least[inner + v] = least[v] < least[inner + v] ? least[v] : least[inner + v];
         }
     }
-    for (size_t v = 0; v < vertices; v++) pieces += least[v] == (int)v;
+    for (int c = 0; c < 3 * view_triangles(1); c++) used[least[corner[c]]] = true;
+    for (size_t v = 0; v < vertices; v++) pieces += used[v];
     free(least);
+    free(used);
     return pieces;
 }
 
