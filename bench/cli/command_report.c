@@ -26,7 +26,7 @@ static const BenchSetting settings[] = {
      BENCH_IN(Options, output)},
     BENCH_OVERWRITE_OPTION(Options, overwrite, 1),
     {BENCH_OPTION("no-page", NULL, 1,
-                  "Leave out the live page, 2.5 MB, in which scenes' pictures open"),
+                  "Leave out the live page, 2.8 MB, in which scenes' pictures open"),
      BENCH_IN(Options, no_page)},
     {BENCH_OPTION("title", "TEXT", 1, "The page's heading (default: shapebench report)"),
      BENCH_IN(Options, title), .letter = 't'},

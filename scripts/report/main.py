@@ -240,7 +240,7 @@ def parse():
                         help="a page NAME.html, or a folder (default: %(default)s)")
     parser.add_argument("--overwrite", action="store_true", help="replace a page or report that is there")
     parser.add_argument("--title", default="shapebench report")
-    parser.add_argument("--no-page", action="store_true", help="leave out the live page, 2.5 MB")
+    parser.add_argument("--no-page", action="store_true", help="leave out the live page, 2.8 MB")
     parser.add_argument("--program", default="shapebench", help="which compares files (default: %(default)s)")
     parser.add_argument("--quiet", action="store_true")
     return parser.parse_args()
