@@ -377,8 +377,8 @@ static SmCode run_frames(BenchPlayback *play, BenchRecording *recording, const O
             code = run_step(play, recording, options->record, outcome, error);
         end_span(outcome);
         if (code) break;
-        follow(play, outcome);
         outcome->finite = state_finite(play);
+        if (outcome->finite) follow(play, outcome);
         if (recording && outcome->finite) code = bench_recording_frame(recording, error);
         bench_progress_show(&progress, scene->name, (f + 1.0) / scene->frames);
     }

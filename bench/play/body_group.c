@@ -119,7 +119,7 @@ bool bench_group_follow(BenchGroup *group)
     double start = sm_now();
     if (!group->carrier->follow || !group->carrier->follow(group)) return false;
     group->last.resampled = true;
-    group->last.split |= differs(group, vertices, triangles);
+    group->last.split |= group->skin.drawn || differs(group, vertices, triangles);
     group->last.follow_seconds += sm_now() - start;
     return true;
 }
@@ -132,7 +132,7 @@ SmCode bench_group_frame(BenchGroup *group, double from, double to, SmError *err
     bench_group_follow(group);
     SmCode code = SM_OK;
     if (group->carrier->frame) code = group->carrier->frame(group, from, to, error);
-    group->last.split = differs(group, vertices, triangles);
+    group->last.split |= differs(group, vertices, triangles);
     return code;
 }
 

@@ -56,7 +56,8 @@ TEST(frames_say_where_it_comes_apart)
             bench_playback_advance(&play, NULL);
         }
         bool follows = bench_playback_follow(&play);
-        assert_true(follows == last->resampled && follows == (last->follow_seconds > 0));
+        assert_true(follows == last->resampled && follows == last->split &&
+                    follows == (last->follow_seconds > 0));
         changed += follows;
     }
     assert_in_range(changed, 1, scene.frames);

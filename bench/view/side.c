@@ -167,6 +167,7 @@ static void copy_state(SmEngine *shell, SmEngine *from, long size)
 void view_side_go_on(ViewSide *side, const ViewSide *from)
 {
     assert(view_side_is_like(side, from));
+    if (!view_side_is_there(side)) return;
     SmEngine *engine = side->play.group[0].runner.engine,
              *before = from->play.group[0].runner.engine;
     if (view_side_elastic(side)) {

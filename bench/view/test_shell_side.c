@@ -53,6 +53,15 @@ static void vertex(int side, long number, double point[3])
     for (int d = 0; d < 3; d++) point[d] = view_points(side)[3 * number + d];
 }
 
+/* What a shell does not take leaves its side absent, and so it stays when a knob is turned. */
+TEST(what_is_absent_stays_so)
+{
+    for (int keep = 0; keep < 2; keep++) {
+        opened(BAR " );\nkick = 1.0;\nmeshless = { nodes = 150; };\n", keep);
+        assert_string_not_equal(view_absent(1), "");
+    }
+}
+
 /* In the middle of the bar's end that is free. */
 static int end_of_bar(void)
 {

@@ -41,14 +41,15 @@ int ref_cylinders_at(const RefCylinders *cylinders, const double theta[2])
 
 bool ref_cylinders_zero(const RefCylinders *cylinders, const double low[2], const double high[2])
 {
-    int at = ref_cylinders_at(cylinders, low);
+    const double middle[2] = {(low[0] + high[0]) / 2, (low[1] + high[1]) / 2};
+    int at = ref_cylinders_at(cylinders, middle);
     const RefCylinder *cylinder = cylinders->cylinder + at;
     double width = width_of(cylinder), tiny = 1e-9 * width;
     for (int j = 0; j < cylinders->joints; j++) {
         const RefJoint *joint = cylinders->joint + j;
         double side = joint->up ? cylinder->high[1] : cylinder->low[1];
         if (joint->from != at || side < low[1] - tiny || side > high[1] + tiny) continue;
-        for (int k = 0; k < 2; k++) /* the left side's is also the right one's */
+        for (int k = -1; k <= 1; k++) /* it goes on where it is cut open */
             if (joint->begin + k * width >= low[0] - tiny &&
                 joint->begin + k * width <= high[0] + tiny)
                 return true;

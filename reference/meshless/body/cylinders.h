@@ -36,7 +36,7 @@ void ref_cylinders_free(RefCylinders *cylinders);
 /* The cylinder of a place of its rectangle, or near that. */
 int ref_cylinders_at(const RefCylinders *cylinders, const double theta[2]);
 
-/* Whether a box of a rectangle has a zero on its sides. O(joints). */
+/* Whether a box, whose middle is in a rectangle, has a zero on that's sides. O(joints). */
 bool ref_cylinders_zero(const RefCylinders *cylinders, const double low[2], const double high[2]);
 
 /* Goes straight from a place of a rectangle: theta becomes the place where that ends, in its
@@ -76,7 +76,7 @@ void ref_cylinder_images_free(RefCylinderImages *images);
  * nearer than b to the line of 1 - c(distance / b), c the weights' spline and b a quarter of the
  * node's reach: weights fall to 0 towards the line behind a zero, on both of its sides, so that
  * functions are as smooth there as elsewhere. At a zero itself they are not: derivatives grow as
- * the distance falls. */
+ * the distance falls. Of more than 16 zeros the first 16 count. */
 bool ref_cylinders_pass(const RefCylinders *cylinders, const double x[2], const double from[2],
                         const double node[2], double reach, double part[6]);
 

@@ -305,3 +305,29 @@ TEST(moving_the_cuts_changes_nothing)
     ref_quadtree_free(&tree);
     ref_quadtree_free(&other);
 }
+
+/* Whether a box has a zero on its sides does not depend on where cylinders are cut open. */
+TEST(zeros_of_boxes_are_where_they_are)
+{
+    static Trousers t, moved;
+    double cut[3];
+    long with = 0;
+    make_trousers(1.3, (double[3]){0, 0, 0}, &t);
+    for (int c = 0; c < 3; c++) cut[c] = 0.37 * widths[c];
+    make_trousers(1.3, cut, &moved);
+    for (int n = 0; n < 20000; n++) {
+        const RefCylinder *in = t.cylinder + random_int(&seed, 3);
+        double middle[3] = {0}, there[3], low[2][2], high[2][2];
+        for (int d = 0; d < 2; d++) middle[d] = random_between(&seed, in->low[d], in->high[d]);
+        move_place(&t, cut, middle, there);
+        for (int d = 0; d < 2; d++) {
+            double half = random_between(&seed, 0, 0.4 * (in->high[d] - in->low[d]));
+            low[0][d] = middle[d] - half, high[0][d] = middle[d] + half;
+            low[1][d] = there[d] - half, high[1][d] = there[d] + half;
+        }
+        bool has = ref_cylinders_zero(&t.all, low[0], high[0]);
+        assert_int_equal(has, ref_cylinders_zero(&moved.all, low[1], high[1]));
+        with += has;
+    }
+    assert_in_range(with, 1000, 19000);
+}

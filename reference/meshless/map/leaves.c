@@ -402,8 +402,9 @@ static bool place_middles(const Trace *trace, RefLeaves *leaves)
 {
     const RefTriangulation *surface = trace->surface;
     const RefCylinders *cylinders = &leaves->cylinders;
-    const Arc *arc = trace->arc; /* between zeros there is one inside */
-    while (arc->kind != INSIDE) arc++;
+    const Arc *arc = trace->arc, *behind = trace->arc + trace->arcs;
+    while (arc < behind && arc->kind != INSIDE) arc++;
+    if (arc == behind) return false; /* between zeros there is one inside */
     int *queue = sm_alloc((size_t)surface->triangles, sizeof *queue), root = 0;
     bool *seen = sm_alloc((size_t)surface->triangles, sizeof *seen), whole = true;
     double at[2], middle[2], way[2];

@@ -713,8 +713,8 @@ static SmCode map_whole(const char *name, RefSurfaceMap *map, SmError *error)
         if (!more) break;
         for (int n = 1; n < steps && more; n++) more = simplify(&rest);
         RefSurfaceMap other = copy_of(&rest);
-        bool better = map_mended(name, &other, code == SM_OK ? NULL : error) == SM_OK &&
-                      (code != SM_OK || other.flips < map->flips);
+        bool better =
+            map_mended(name, &other, NULL) == SM_OK && (code != SM_OK || other.flips < map->flips);
         RefSurfaceMap worse = better ? *map : other;
         if (better) *map = other;
         if (better) code = SM_OK;

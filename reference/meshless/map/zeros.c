@@ -265,11 +265,13 @@ static bool place_zero(Place *place, int vertex, int *zero)
         if (!look_around(place, vertex, &star) || !fit(&star, place)) return false;
         held = holds(&star, place->zero, weight);
         int nearest = 0;
-        for (int k = 1; k < star.count; k++)
+        for (int k = 1; k < points_of(&star); k++)
             if (cabs(star.z[k] - place->zero) < cabs(star.z[nearest] - place->zero)) nearest = k;
         bool far = weight[1] < CLOSE && weight[2] < CLOSE;
         if (held >= 0 && (far || moves == MOST_MOVES)) break;
-        vertex = place->surface->vertex[ref_corner_next(star.corner[nearest])];
+        int corner = nearest < star.count ? ref_corner_next(star.corner[nearest])
+                                          : ref_corner_last(star.corner[star.count - 1]);
+        vertex = place->surface->vertex[corner];
         held = -1;
     }
     if (held < 0 || (star.open && weight[0] >= CLOSE)) return false;

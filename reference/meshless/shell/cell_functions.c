@@ -84,7 +84,7 @@ INLINE void factorise(int terms, Work *work, double *pivot)
             LANE_BY_LANE
             {
                 double share = whole[l] > 0 ? of[l] / whole[l] : 0;
-                pivot[l] = share < pivot[l] ? share : pivot[l];
+                pivot[l] = share >= pivot[l] ? pivot[l] : share; /* NaN, too */
                 D[i][l] = of[l];
                 work->inverse[i][l] = 1 / of[l];
             }

@@ -299,7 +299,7 @@ static void inherit(RefCracked *cracked, long from)
     }
 }
 
-/* Whether a zero is on a box's sides in its rectangle. The surface is not smooth over the plane
+/* Whether a cover has a zero on its sides. The surface is not smooth over the plane
  * there, so that new nodes' parameters would be off; and cells there are finer already. With splits
  * a crack through a zero made three times as many samples soft. */
 static bool has_zero(const RefChart *chart, const double low[2], const double high[2])

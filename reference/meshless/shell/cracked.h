@@ -2,10 +2,11 @@
  * when the crack changes, and only that.
  *
  * Cells whose node gets too little from its own cover are split into four, with a node each, and
- * others to keep the tree balanced; those about zeros of a plane of cylinders are not. Then samples
- * whose functions changed are taken again, cell by cell, and sums of pairs whose cells changed are
- * added up again, in the order in which they would be if all was made anew: the matrices have the
- * same bits. What is made depends on where cracks are and not on how they came there.
+ * others to keep the tree balanced; those whose covers reach a zero of a plane of cylinders are
+ * not. Then samples whose functions changed are taken again, cell by cell, and sums of pairs whose
+ * cells changed are added up again, in the order in which they would be if all was made anew: the
+ * matrices have the same bits. What is made depends on where cracks are and not on how they came
+ * there.
  *
  * A sample is stiff where its functions leave the surface what a conformal map would have of it
  * (thin.h): a shell that cracks is soft where its map draws it out more than fourfold, before any

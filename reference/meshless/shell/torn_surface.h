@@ -20,10 +20,11 @@ typedef struct {
     double (*middle)[2];      /* [triangles] where a triangle is, */
     double (*place)[3][2];    /* [triangles] and where its corners and the middles of those beside
                                  it are in the plane of that */
-    double (*next)[3][2];
-    int (*corner)[3]; /* [triangles] vertices, and behind them copies */
-    bool (*open)[3];  /* [triangles] edges from corner k on along which nothing is */
-    bool *crumb;      /* [triangles] no node moves it: it is not drawn */
+    double (*next)[3][2]; /* themselves; its own place of one behind a zero, or farther than ways
+                             are followed: pieces alone part it from that */
+    int (*corner)[3];     /* [triangles] vertices, and behind them copies */
+    bool (*open)[3];      /* [triangles] edges from corner k on along which nothing is */
+    bool *crumb;          /* [triangles] no node moves it: it is not drawn */
     long copies, room, eye_room, seen_room;
     int *of;           /* [copies] the vertex */
     double (*eye)[2];  /* [copies] where it is seen from, */
