@@ -83,6 +83,19 @@ class PageCase(unittest.TestCase):
         chain.perform()
         self.ask("await new Promise((done) => requestAnimationFrame(() => setTimeout(done, 100)))")  # it is there
 
+    def toggle_inside(self):
+        """Shows or hides all that the menu of insides has."""
+        for name in ("lattice", "region", "rest", "difference"):
+            self.driver.find_element("id", f"inside-{name}").click()
+
+    def marked(self, steps):
+        """What is said of the particle or node in the middle of the second view, some steps later."""
+        view = self.driver.find_element("id", "view-1")
+        view.click()
+        view.send_keys("i")
+        self.ask("shapebench.advance(values[0])", steps)
+        return self.driver.find_element("css selector", "#view-1 .marked").text
+
     def tearDown(self):
         self.assertEqual(self.driver.get_log("browser"), [], "messages on the console")
 

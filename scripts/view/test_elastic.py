@@ -198,16 +198,10 @@ class Elastic(PageCase):
         self.assertGreaterEqual(mark["count"], 27)
         self.assertLess(numpy.abs(members - nodes[middle]).max(), 0.75 * max(edges))
         numpy.testing.assert_allclose(box.mean(axis=0), nodes[middle], atol=1e-6)
-        for name in ("lattice", "region", "rest", "difference"):
-            self.driver.find_element("id", f"inside-{name}").click()
-        view = self.driver.find_element("id", "view-1")
-        view.click()
-        view.send_keys("i")
-        self.ask("shapebench.advance(1)")
-        words = self.driver.find_element("css selector", "#view-1 .marked").text
+        self.toggle_inside()
+        words = self.marked(1)
         self.assertRegex(words, r"^Node \d+: it moves what is in its cover, where \d+ nodes stand$")
-        for name in ("lattice", "region", "rest", "difference"):
-            self.driver.find_element("id", f"inside-{name}").click()
+        self.toggle_inside()
         self.ask("shapebench.advance(1)")
 
     def test_its_figures(self):

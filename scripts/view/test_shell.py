@@ -217,19 +217,13 @@ class Shell(PageCase):
 
     def test_its_inside(self):
         self.open_text(STILL)
-        for name in ("lattice", "region", "rest", "difference"):
-            self.driver.find_element("id", f"inside-{name}").click()
-        view = self.driver.find_element("id", "view-1")
-        view.click()
-        view.send_keys("i")
-        self.ask("shapebench.advance(5)")
-        words = self.driver.find_element("css selector", "#view-1 .marked").text
+        self.toggle_inside()
+        words = self.marked(5)
         self.assertRegex(words, r"^Node \d+: \d+ nodes move the surface where it stands$")
         legend = self.driver.find_element("css selector", "#view-1 .legend").text
         levels = [int(count) for count in re.findall(r"level \d+: (\d+) cells", legend)]
         self.assertEqual(sum(levels), self.ask("return shapebench.inside.data.cells(1).length / 13"))
-        for name in ("lattice", "region", "rest", "difference"):
-            self.driver.find_element("id", f"inside-{name}").click()
+        self.toggle_inside()
         self.ask("shapebench.advance(1)")
         self.driver.find_element("css selector", "#tools [value=cut]").click()
         self.ask("for (let i = 0; i < 100; i++) await new Promise((done) => setTimeout(done, 20)); shapebench.pause()")

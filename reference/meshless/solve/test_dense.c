@@ -4,17 +4,7 @@
 
 #include "../../../lib/test_frame.h"
 #include "../../../lib/test_random.h"
-#include "dense.h"
-#define ref_dense_definite plain_definite
-#define ref_dense_any      plain_any
-#define ref_semidefinite   plain_semidefinite
-bool plain_definite(int n, double *A, double *b);
-bool plain_any(int n, double *A, double *b);
-int plain_semidefinite(int n, double *A, double tolerance, int *order);
-#include "dense_plain.c"
-#undef ref_dense_definite
-#undef ref_dense_any
-#undef ref_semidefinite
+#include "test_dense_plain.h"
 
 enum { MOST = 40 };
 

@@ -1,20 +1,11 @@
 /* Pivoted factors: LAPACK's and the page's own are the same, and the matrix again. */
-#include "semidefinite.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "../../../lib/test_frame.h"
 #include "../../../lib/test_random.h"
-#define ref_semidefinite   plain_semidefinite
-#define ref_dense_definite unused_definite
-#define ref_dense_any      unused_any
-bool unused_definite(int n, double *A, double *b);
-bool unused_any(int n, double *A, double *b);
-int plain_semidefinite(int n, double *A, double tolerance, int *order);
-#include "dense_plain.c"
-#undef ref_semidefinite
+#include "test_dense_plain.h"
 
 enum { MOST = 60 };
 
