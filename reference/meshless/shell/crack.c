@@ -37,8 +37,8 @@ void ref_cracks_create(const RefChart *chart, double margin, RefCracks *cracks)
 void ref_cracks_free(RefCracks *cracks)
 {
     ref_chart_images_free(&cracks->images);
-    sm_free_all(cracks->bin, cracks->binned, cracks->near, cracks->piece, cracks->arm,
-                cracks->settled);
+    sm_free_all(cracks->bin, cracks->binned, cracks->near, cracks->mark, cracks->piece,
+                cracks->arm, cracks->settled);
     *cracks = (RefCracks){.chart = NULL};
 }
 
@@ -52,9 +52,10 @@ int ref_cracks_start(RefCracks *cracks, const double at[2], int parent)
 
 static void box_of(const RefCrackPiece *piece, double low[2], double high[2])
 {
+    const double *a = piece->at.end[0], *b = piece->at.end[1];
     for (int d = 0; d < 2; d++) {
-        low[d] = fmin(piece->at.end[0][d], piece->at.end[1][d]);
-        high[d] = fmax(piece->at.end[0][d], piece->at.end[1][d]);
+        low[d] = a[d] < b[d] ? a[d] : b[d];
+        high[d] = a[d] < b[d] ? b[d] : a[d];
     }
 }
 
@@ -101,6 +102,16 @@ static void bins_of_piece(const RefCracks *cracks, const RefCrackPiece *piece, i
     bins_of(cracks, low, high, bin);
 }
 
+/* Room for all pieces. */
+static void make_marks(RefCracks *cracks)
+{
+    long words = sm_room_for(cracks->pieces / 64);
+    sm_make_room(cracks->near, cracks->near_room, cracks->pieces);
+    if (cracks->pieces / 64 < cracks->mark_room) return;
+    cracks->mark = sm_widen(cracks->mark, cracks->mark_room, words, sizeof *cracks->mark, 0);
+    cracks->mark_room = words;
+}
+
 /* Sorts pieces into bins. */
 static void bin_pieces(RefCracks *cracks)
 {
@@ -121,6 +132,7 @@ static void bin_pieces(RefCracks *cracks)
         for (int n = 0; n < BINS * BINS; n++) cracks->bin[n + 1] += cracks->bin[n];
         sm_make_room(cracks->binned, cracks->bin_room, cracks->bin[BINS * BINS]);
     }
+    make_marks(cracks);
     cracks->stale = false;
     cracks->low[0] = INFINITY; /* nothing is in this box */
 }
@@ -132,27 +144,24 @@ static bool touches(const RefCrackPiece *piece, const double low[2], const doubl
     return from[0] <= high[0] && to[0] >= low[0] && from[1] <= high[1] && to[1] >= low[1];
 }
 
-/* Takes all pieces whose boxes touch a box, rising. */
+/* Takes all pieces whose boxes touch a box, rising. A piece is in several bins. */
 static void gather(RefCracks *cracks, const double low[2], const double high[2])
 {
     int box[4];
     bins_of(cracks, low, high, box);
     memcpy(cracks->low, low, sizeof cracks->low);
     memcpy(cracks->high, high, sizeof cracks->high);
-    cracks->near_count = 0;
     for (int j = box[1]; j <= box[3] && cracks->pieces; j++) {
         long from = cracks->bin[BINS * j + box[0]], end = cracks->bin[BINS * j + box[2] + 1];
-        sm_make_room(cracks->near, cracks->near_room, cracks->near_count + end - from);
-        for (long n = from; n < end; n++) cracks->near[cracks->near_count++] = cracks->binned[n];
+        for (long n = from; n < end; n++)
+            cracks->mark[cracks->binned[n] / 64] |= UINT64_C(1) << cracks->binned[n] % 64;
     }
-    long all = cracks->near_count;
     cracks->near_count = 0;
-    sm_sort_ints(cracks->near, all);
-    for (long n = 0; n < all; n++) {
-        int p = cracks->near[n];
-        if ((n == 0 || p != cracks->near[n - 1]) && touches(cracks->piece + p, low, high))
-            cracks->near[cracks->near_count++] = p;
-    }
+    for (long word = 0; 64 * word < cracks->pieces; word++)
+        for (; cracks->mark[word]; cracks->mark[word] &= cracks->mark[word] - 1) {
+            int p = (int)(64 * word) + __builtin_ctzll(cracks->mark[word]);
+            if (touches(cracks->piece + p, low, high)) cracks->near[cracks->near_count++] = p;
+        }
 }
 
 bool ref_cracks_look(const RefCracks *cracks, const double low[2], const double high[2])

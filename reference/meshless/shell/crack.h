@@ -13,6 +13,8 @@
 #ifndef REF_CRACK_H
 #define REF_CRACK_H
 
+#include <stdint.h>
+
 #include "chart.h"
 
 /* A straight piece of an arm, or an image of one. */
@@ -45,8 +47,9 @@ typedef struct {
     bool stale;             /* private, as is the rest: pieces are not in these bins yet */
     int *bin, *binned;      /* where each bin's pieces begin, and their numbers */
     double low[2], high[2]; /* a box, and all pieces whose boxes touch it */
-    long bin_room, near_count, near_room;
+    long bin_room, near_count, near_room, mark_room;
     int *near;
+    uint64_t *mark; /* [pieces / 64] bits of those that are gathered; none in between */
     RefChartImages images;
 } RefCracks;
 

@@ -396,35 +396,73 @@ static void fill_nodes(RefCracked *cracked, const unsigned char *fresh, RefField
     ref_shape_free(&whole);
 }
 
-/* Whether samples of a cell have other functions than before. `fresh` marks new nodes, which may
- * have taken the numbers of nodes that are gone. */
-static bool is_stale(const RefCracked *cracked, long c, const unsigned char *fresh)
+/* New nodes and their images, which may have taken the numbers of nodes that are gone. */
+typedef struct {
+    const unsigned char *is; /* [nodes] */
+    long count;
+    long *place; /* [count] among the nodes' positions */
+} Fresh;
+
+static Fresh list_fresh(const RefNodes *nodes, const unsigned char *is)
+{
+    Fresh fresh = {.is = is};
+    long all = nodes->count + nodes->images;
+    fresh.place = sm_alloc((size_t)all, sizeof *fresh.place);
+    for (long n = 0; n < all; n++)
+        if (is[nodes->owner ? nodes->owner[n] : n]) fresh.place[fresh.count++] = n;
+    return fresh;
+}
+
+/* The samples of a cell, and the box of all that is within a cover's reach of them. */
+typedef struct {
+    double at[2][REF_GRID_SIDE], low[2], high[2];
+    int plane;
+} Surroundings;
+
+static Surroundings surroundings_of(const RefCracked *cracked, long c)
+{
+    Surroundings near;
+    double margin = cracked->cracks.margin;
+    ref_samples_grid(&cracked->shell->tree, c, near.at);
+    for (int d = 0; d < 2; d++) {
+        near.low[d] = near.at[d][0] - margin;
+        near.high[d] = near.at[d][REF_GRID_SIDE - 1] + margin;
+    }
+    const double corner[2] = {near.at[0][0], near.at[1][0]};
+    near.plane = ref_chart_plane(cracked->cracks.chart, corner);
+    return near;
+}
+
+/* Which of the samples the cover of a node, or image of one, reaches; false: none. */
+static bool reached_by(const RefNodes *nodes, long n, const Surroundings *near, double margin,
+                       RefGrid *grid)
+{
+    const double *node = nodes->position[n], reach = nodes->reach[n], more = margin - reach;
+    int first[2];
+    return (!nodes->cylinders || nodes->home[n] == near->plane) && node[0] - near->low[0] > more &&
+           near->high[0] - node[0] > more && node[1] - near->low[1] > more &&
+           near->high[1] - node[1] > more &&
+           ref_samples_reached((const double(*)[REF_GRID_SIDE])near->at, node, reach, first, grid);
+}
+
+/* Whether samples of a cell have other functions than before. */
+static bool is_stale(const RefCracked *cracked, long c, const Fresh *fresh)
 {
     const RefNodes *nodes = &cracked->shell->nodes;
-    const RefCrackedCell *cell = cracked->cell + c;
-    double at[2][REF_GRID_SIDE], low[2], high[2], margin = cracked->cracks.margin;
-    for (int n = 0; n < cell->element.count; n++)
-        if (fresh[cell->element.node[n]]) return true;
-    ref_samples_grid(&cracked->shell->tree, c, at);
-    for (int d = 0; d < 2; d++) {
-        low[d] = at[d][0] - margin;
-        high[d] = at[d][REF_GRID_SIDE - 1] + margin;
-    }
-    ref_cracks_look(&cracked->cracks, low, high);
-    const double corner[2] = {at[0][0], at[1][0]};
-    int plane = ref_chart_plane(cracked->cracks.chart, corner);
-    for (long n = 0; n < nodes->count + nodes->images; n++) {
-        const double *node = nodes->position[n], reach = nodes->reach[n];
-        RefGrid grid;
-        int first[2];
-        if (nodes->cylinders && nodes->home[n] != plane) continue;
-        if (!(node[0] - low[0] > margin - reach && high[0] - node[0] > margin - reach &&
-              node[1] - low[1] > margin - reach && high[1] - node[1] > margin - reach) ||
-            !ref_samples_reached((const double(*)[REF_GRID_SIDE])at, node, reach, first, &grid))
-            continue;
-        if (fresh[nodes->owner ? nodes->owner[n] : n]) return true;
-        if (ref_cracks_fan_changed(&cracked->cracks, &grid, node, reach)) return true;
-    }
+    const RefElement *element = &cracked->cell[c].element;
+    const RefCracks *cracks = &cracked->cracks;
+    const Surroundings near = surroundings_of(cracked, c);
+    RefGrid grid;
+    for (int n = 0; n < element->count; n++)
+        if (fresh->is[element->node[n]]) return true;
+    for (long n = 0; n < fresh->count; n++)
+        if (reached_by(nodes, fresh->place[n], &near, cracks->margin, &grid)) return true;
+    if (!ref_cracks_stir(cracks, near.low, near.high)) return false;
+    ref_cracks_look(cracks, near.low, near.high);
+    for (long n = 0; n < nodes->count + nodes->images; n++)
+        if (reached_by(nodes, n, &near, cracks->margin, &grid) &&
+            ref_cracks_fan_changed(cracks, &grid, nodes->position[n], nodes->reach[n]))
+            return true;
     return false;
 }
 
@@ -435,10 +473,11 @@ static void touch(const RefElement *element, unsigned char *touched)
 
 /* Takes again what is not what it was; marks nodes whose rows change. Samples that there were are
  * kept in `before`. */
-static void remake_stale(RefCracked *cracked, const unsigned char *fresh, unsigned char *touched,
+static void remake_stale(RefCracked *cracked, const unsigned char *is_fresh, unsigned char *touched,
                          RefFieldsBefore *before)
 {
     RefShell *shell = cracked->shell;
+    Fresh fresh = list_fresh(&shell->nodes, is_fresh);
     RefSamplesWork take = ref_samples_work(&shell->nodes);
     RefShape whole = ref_shape_create(&cracked->whole);
     RefThinWork work = ref_thin_work(shell->nodes.count);
@@ -449,7 +488,7 @@ static void remake_stale(RefCracked *cracked, const unsigned char *fresh, unsign
         const RefSamples *old = before->samples + c;
         bool was = cell->made;
         cell->again = false;
-        if (was && terminal(cracked, c) && !is_stale(cracked, c, fresh)) continue;
+        if (was && terminal(cracked, c) && !is_stale(cracked, c, &fresh)) continue;
         touch(&cell->element, touched);
         before->samples[c] = cell->samples;
         cell->samples = (RefSamples){.count = 0};
@@ -474,6 +513,7 @@ static void remake_stale(RefCracked *cracked, const unsigned char *fresh, unsign
     ref_thin_work_free(&work);
     ref_samples_work_free(&take);
     ref_shape_free(&whole);
+    free(fresh.place);
 }
 
 /* Room for new nodes; residuals are zero. */
