@@ -41,4 +41,10 @@ typedef struct {
 } RefFrameSums;
 extern RefFrameSums ref_frame_sums;
 
+/* Columns of a matrix that is squared and has so many that count. */
+static inline int ref_frame_columns(int count)
+{
+    return (count + REF_FRAME_TILE - 1) / REF_FRAME_TILE * REF_FRAME_TILE;
+}
+
 #endif

@@ -37,8 +37,8 @@ void ref_cracks_create(const RefChart *chart, double margin, RefCracks *cracks)
 void ref_cracks_free(RefCracks *cracks)
 {
     ref_chart_images_free(&cracks->images);
-    sm_free_all(cracks->bin, cracks->binned, cracks->near, cracks->mark, cracks->piece,
-                cracks->arm, cracks->settled);
+    sm_free_all(cracks->bin, cracks->binned, cracks->near, cracks->mark, cracks->piece, cracks->arm,
+                cracks->settled);
     *cracks = (RefCracks){.chart = NULL};
 }
 

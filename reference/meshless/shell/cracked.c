@@ -34,7 +34,7 @@ void ref_cracked_free(RefCracked *cracked)
         forget_cell(cracked->cell + c);
     if (cracked->shell) {
         cracked->shell->nodes.cut = (RefCut){NULL, NULL};
-        cracked->shell->functions = (RefShellFunctions){NULL, NULL};
+        cracked->shell->functions = (RefShellFunctions){NULL, NULL, NULL};
     }
     ref_element_rows_free(&cracked->rows);
     ref_cracks_free(&cracked->cracks);
@@ -149,7 +149,9 @@ int ref_cracked_sample(const RefCracked *cracked, long c, const double theta[2])
     int best = -1;
     ref_quadtree_cell(tree, tree->cell + c, middle, edge);
     int nearest = ref_samples_nearest(middle, edge, theta);
-    if (!ref_cracks_part(&cracked->cracks, theta, samples->theta[nearest])) return nearest;
+    const double *there = samples->theta[nearest];
+    if (there[0] == theta[0] && there[1] == theta[1]) return nearest;
+    if (!ref_cracks_part(&cracked->cracks, theta, there)) return nearest;
     for (int n = 0; n < REF_SAMPLES_PER_CELL; n++) {
         const double *at = samples->theta[n];
         double far = hypot(at[0] - theta[0], at[1] - theta[1]);
@@ -170,6 +172,17 @@ static int functions_at(const void *samples, const double theta[3], RefShape *sh
         return ref_samples_shape(&shell->nodes, shell->basis, edge_of(cracked, c), theta, shape);
     ref_samples_expand(&cracked->cell[c].samples, n, theta, shape);
     return shape->count ? (int)shell->basis : 0;
+}
+
+static double area_at(const void *samples, const double theta[3])
+{
+    const RefCracked *cracked = samples;
+    const RefQuadtree *tree = &cracked->shell->tree;
+    double middle[2], edge[2];
+    int c = ref_quadtree_at(tree, theta);
+    ref_quadtree_cell(tree, tree->cell + c, middle, edge);
+    int n = ref_samples_nearest(middle, edge, theta);
+    return cracked->cell[c].samples.area[n] / cracked->cell[c].samples.weight[n];
 }
 
 bool ref_cracked_side(const RefCracked *cracked, const double theta[2], const double eye[2],
@@ -252,7 +265,7 @@ void ref_cracked_create(RefShell *shell, const RefShellOptions *options,
     find_above(cracked);
     shell->nodes.cut = (RefCut){ref_cracks_pass, &cracked->cracks};
     ref_cracked_remake(cracked);
-    shell->functions = (RefShellFunctions){functions_at, cracked};
+    shell->functions = (RefShellFunctions){functions_at, area_at, cracked};
 }
 
 /* The share of its own weight that a cell's node gets from its cover, as far as this is on the

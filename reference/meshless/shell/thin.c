@@ -77,19 +77,13 @@ static void add_rows(const double B[6][3], const double G[3][3], const double we
             }
 }
 
-/* Columns of a matrix that is squared. */
-static int columns_for(int count)
-{
-    return (count + REF_FRAME_TILE - 1) / REF_FRAME_TILE * REF_FRAME_TILE;
-}
-
 /* Writes a sample's rows; false where they are none of the stiffness. A node that is there twice
  * has both its functions in its columns. */
 static bool write_sample(const double (*X)[3], const RefSamples *samples, long p, double t,
                          const RefMaterial *material, int nodes, int sample, RefThinWork *work)
 {
     long from = samples->start[p];
-    int count = (int)(samples->start[p + 1] - from), columns = columns_for(3 * nodes);
+    int count = (int)(samples->start[p + 1] - from), columns = ref_frame_columns(3 * nodes);
     const int *node = samples->node + from;
     const double(*part)[6] = (const double(*)[6])(samples->part + from);
     RefFrame frame = ref_middle_at(X, count, node, part);
@@ -98,7 +92,7 @@ static bool write_sample(const double (*X)[3], const RefSamples *samples, long p
     ref_thin_weights(area, t, material, weight);
     bool stiff = ref_thin_is_stiff(&frame, area / samples->weight[p], samples->trace[p]);
     for (int e = 0; e < count; e++)
-        work->shape[sample * columns_for(nodes) + work->number[node[e]]] += root * part[e][0];
+        work->shape[sample * ref_frame_columns(nodes) + work->number[node[e]]] += root * part[e][0];
     if (!stiff) return false;
     ref_thin_factor(frame.inverse, nu, G);
     for (int e = 0; e < count; e++) {
@@ -132,12 +126,12 @@ void ref_element_free(RefElement *element)
 /* Squares of what was written, as pairs of nodes have them. */
 static void square_rows(const RefThinWork *work, RefElement *element)
 {
-    int count = element->count, columns = columns_for(count);
+    int count = element->count, columns = ref_frame_columns(count);
     double(*sum)[10] = element->sum;
     ref_frame_sums.square(REF_SAMPLES_PER_CELL, columns, work->shape, work->square);
     for (int a = 0; a < count; a++)
         for (int b = a; b < count; b++) (*sum++)[0] = work->square[(long)a * columns + b];
-    columns = columns_for(3 * count);
+    columns = ref_frame_columns(3 * count);
     ref_frame_sums.square(6 * REF_SAMPLES_PER_CELL, columns, work->strain, work->square);
     sum = element->sum;
     for (int a = 0; a < count; a++)
@@ -152,7 +146,7 @@ int ref_thin_element(const double (*X)[3], const RefSamples *samples, long cell,
                      const RefMaterial *material, RefThinWork *work, RefElement *element)
 {
     int soft = 0, count = ref_samples_nodes(samples, cell, work->node, work->number);
-    long wide = columns_for(3 * count), narrow = columns_for(count);
+    long wide = ref_frame_columns(3 * count), narrow = ref_frame_columns(count);
     if (count > element->room || !element->node) {
         element->room = count;
         element->node = sm_realloc(element->node, (size_t)count, sizeof *element->node);

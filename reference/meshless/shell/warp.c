@@ -81,8 +81,8 @@ static void add_slopes(const RefShape *shape, int place, int *number, long *room
 /* Whether functions leave the surface its area at a place: between cracks they may not. */
 static bool bears(const RefShell *shell, const double theta[3], const RefFrame *frame)
 {
-    double L = shell->chart.factor(shell->chart.data, theta);
-    return !shell->nodes.cut.pass || frame->area > LEAST_AREA * L * L;
+    const RefShellFunctions *kept = &shell->functions;
+    return !kept->at || frame->area > LEAST_AREA * kept->area(kept->samples, theta);
 }
 
 static void make_cells(const RefShell *shell, RefWarp *warp)
@@ -147,6 +147,25 @@ static void make_normals(const RefShell *shell, RefWarp *warp)
     ref_shape_free(&shape);
 }
 
+/* Rows of a cell's functions whose squares are g^kl phi_I,k phi_J,l summed over its places, by the
+ * metric's root. */
+static void root_rows(const RefWarp *warp, long c, int columns, double *row)
+{
+    memset(row, 0, LANES * (size_t)columns * sizeof *row);
+    for (int p = 0; p < PLACES; p++) {
+        const double *q = warp->place[PLACES * c + p].metric;
+        if (!(q[0] > 0)) continue; /* no place */
+        double first = sqrt(q[0]), beside = q[2] / first;
+        double second = sqrt(fmax(q[1] - beside * beside, 0));
+        for (long e = warp->start[c]; e < warp->start[c + 1]; e++) {
+            const double *slope = warp->slope[e] + 2 * p;
+            double *to = row + 2 * p * columns + (e - warp->start[c]);
+            to[0] = first * slope[0] + beside * slope[1];
+            to[columns] = second * slope[1];
+        }
+    }
+}
+
 /* int g^kl phi_I,k phi_J,l over the places: of pairs that have mass together, as integration points
  * are there, too. */
 static void make_laplacian(const RefShell *shell, RefWarp *warp)
@@ -155,31 +174,33 @@ static void make_laplacian(const RefShell *shell, RefWarp *warp)
     size_t nodes = (size_t)warp->nodes, entries = (size_t)M->start[nodes];
     RefSparse *L = &warp->laplacian.stiffness;
     int *at = sm_alloc(nodes, sizeof *at); /* of a column's rows in L */
+    long most = 0;
     *L = (RefSparse){.columns = M->columns,
-                     .start = sm_alloc(nodes + 1, sizeof *L->start),
-                     .row = sm_alloc(entries, sizeof *L->row),
+                     .start = sm_copy(M->start, nodes + 1, sizeof *L->start),
+                     .row = sm_copy(M->row, entries, sizeof *L->row),
                      .value = sm_alloc(entries, sizeof *L->value)};
-    memcpy(L->start, M->start, (nodes + 1) * sizeof *L->start);
-    memcpy(L->row, M->row, entries * sizeof *L->row);
     for (long c = 0; c < warp->cells; c++)
-        for (long e = warp->start[c]; e < warp->start[c + 1]; e++) {
-            int i = warp->node[e];
+        if (warp->start[c + 1] - warp->start[c] > most) most = warp->start[c + 1] - warp->start[c];
+    most = ref_frame_columns((int)most);
+    double *row = sm_alloc(LANES * (size_t)most, sizeof *row);
+    double *square = sm_alloc((size_t)(most * most), sizeof *square);
+    for (long c = 0; c < warp->cells; c++) {
+        int count = (int)(warp->start[c + 1] - warp->start[c]), columns = ref_frame_columns(count);
+        const int *node = warp->node + warp->start[c];
+        root_rows(warp, c, columns, row);
+        ref_frame_sums.square(LANES, columns, row, square);
+        for (int a = 0; a < count; a++) {
+            int i = node[a];
             for (int k = L->start[i]; k < L->start[i + 1]; k++) at[L->row[k]] = k;
-            for (long f = warp->start[c]; f < warp->start[c + 1]; f++) {
-                if (warp->node[f] < i) continue;
-                double sum = 0;
-                for (int p = 0; p < PLACES; p++) {
-                    const double *q = warp->place[PLACES * c + p].metric;
-                    const double *a = warp->slope[e] + 2 * p, *b = warp->slope[f] + 2 * p;
-                    sum += q[0] * a[0] * b[0] + q[1] * a[1] * b[1] +
-                           q[2] * (a[0] * b[1] + a[1] * b[0]);
-                }
-                int k = at[warp->node[f]];
-                bool pair = k >= L->start[i] && k < L->start[i + 1] && L->row[k] == warp->node[f];
-                if (pair) L->value[k] += sum;
+            for (int b = 0; b < count; b++) {
+                if (node[b] < i) continue;
+                int k = at[node[b]];
+                bool pair = k >= L->start[i] && k < L->start[i + 1] && L->row[k] == node[b];
+                if (pair) L->value[k] += square[a < b ? a * columns + b : b * columns + a];
             }
         }
-    free(at);
+    }
+    sm_free_all(at, row, square);
 }
 
 /* What hangs together, by the mass of pairs, and the nodes' shares of it. */
