@@ -49,7 +49,7 @@ int main(void) { return gsl_linalg_SV_decomp_jacobi((gsl_matrix *)0, 0, 0); }]]
   if(NOT has_gsl)
     set(has_cmocka OFF)
   endif()
-  set(sources_left_out elastic_absent|dense_plain|modes|solver|semidefinite|${sources_of_files})
+  set(sources_left_out elastic_absent|dense_plain|modes|node_order|solver|semidefinite|${sources_of_files})
   if(CMAKE_SIZEOF_VOID_P EQUAL 4) # the library's header has 64-bit numbers of particles
     string(APPEND sources_left_out |public/[a-z_]*)
   endif()
@@ -82,7 +82,7 @@ if(has_modes) # sources that are not compiled
   set(sources_left_out modes_absent)
   list(APPEND pc_needs ${ARPACK_LDFLAGS} -lcholmod -llapack)
 else()
-  set(sources_left_out modes|solver|semidefinite)
+  set(sources_left_out modes|node_order|solver|semidefinite)
 endif()
 
 pkg_check_modules(SECCOMP QUIET libseccomp)

@@ -33,7 +33,7 @@ list(FILTER shell_sources EXCLUDE REGEX "/cell_functions\\.c$") # in frame_objec
 list(APPEND view_sources ${shell_sources})
 foreach(noun engine elastic_absent shell_engine stored body/body body/covers body/cylinders body/gauss_rule
     body/matrices body/mls body/nodes body/octants body/pairs motion/grip motion/motion motion/rotation motion/skin
-    solve/dense_plain solve/least_squares solve/solver surface/cloud surface/local_triangles surface/mpu
+    solve/dense_plain solve/least_squares solve/node_order solve/solver surface/cloud surface/local_triangles surface/mpu
     surface/points)
   list(APPEND view_sources reference/meshless/${noun}.c)
 endforeach()

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "node_order.h"
 #include "semidefinite.h"
 
 const bool ref_solver_built = true;
@@ -15,6 +16,9 @@ struct RefSolver {
     cholmod_factor *factor, *symbolic;     /* the second has an order and places of entries alone */
     cholmod_dense *result[2], *work[2][2]; /* of solves for one right side and for several */
     int size, rows, rank;
+    int *place;     /* [nodes] in the order in which the matrix is factorised, or NULL: as given */
+    double *placed; /* right sides in that order */
+    long placed_room;
     RefRows A;
     double *response; /* [rows][size] K'^-1 A^T, row by row */
     double *S;        /* [rows][rows] of A K'^-1 A^T, and its `order` (semidefinite.h) */
@@ -80,21 +84,39 @@ static cholmod_sparse *held(cholmod_sparse *matrix, const RefMatrices *matrices,
     return sum;
 }
 
+/* Columns of the nodes' parameters into the order of the factor, or back. */
+static void reorder(const RefSolver *solver, int count, bool back, const double *from, double *to)
+{
+    int size = solver->size;
+    for (int c = 0; c < count; c++, from += size, to += size)
+        for (int n = 0; n < size; n++) {
+            int at = 3 * solver->place[n / 3] + n % 3;
+            to[back ? n : at] = from[back ? at : n];
+        }
+}
+
 static void solve_free(RefSolver *solver, int count, const double *b, double *x)
 {
     size_t size = (size_t)solver->size, columns = (size_t)count;
     int several = count > 1;
+    if (solver->place) {
+        sm_make_room(solver->placed, solver->placed_room, (long)(columns * size));
+        reorder(solver, count, false, b, solver->placed);
+    }
     cholmod_dense right = {.nrow = size,
                            .ncol = columns,
                            .nzmax = columns * size,
                            .d = size,
-                           .x = (double *)b,
+                           .x = solver->place ? solver->placed : (double *)b,
                            .xtype = CHOLMOD_REAL,
                            .dtype = CHOLMOD_DOUBLE};
 #pragma omp teams num_teams(1) thread_limit(1)
     cholmod_solve2(CHOLMOD_A, solver->factor, &right, NULL, &solver->result[several], NULL,
                    &solver->work[several][0], &solver->work[several][1], &solver->common);
-    memcpy(x, solver->result[several]->x, columns * size * sizeof *x);
+    if (solver->place)
+        reorder(solver, count, true, solver->result[several]->x, x);
+    else
+        memcpy(x, solver->result[several]->x, columns * size * sizeof *x);
 }
 
 /* What the rows' multipliers do, and the Schur complement with its independent rows. */
@@ -127,42 +149,33 @@ static void factorise(cholmod_sparse *matrix, RefSolver *solver)
     cholmod_factorize(matrix, solver->factor, &solver->common);
 }
 
-/* An order of the parameters of three axes: that of their nodes, whose graph is a ninth of the
- * entries. NULL where there is no memory. */
-static int *order_nodes(const RefSparse *M, cholmod_common *common)
+/* The order and the places of a factor's entries: those of another solver; of a matrix that is in
+ * its nodes' order, that; of others as CHOLMOD finds best. */
+static cholmod_factor *analyse(const RefSolver *like, cholmod_sparse *matrix, RefSolver *solver)
 {
-    size_t nodes = (size_t)M->columns;
-    cholmod_sparse graph = {.nrow = nodes,
-                            .ncol = nodes,
-                            .nzmax = (size_t)M->start[nodes],
-                            .p = M->start,
-                            .i = M->row,
-                            .stype = -1,
-                            .itype = CHOLMOD_INT,
-                            .xtype = CHOLMOD_PATTERN,
-                            .sorted = 1,
-                            .packed = 1};
-    int *order = sm_alloc(3 * nodes, sizeof *order);
-    if (!cholmod_amd(&graph, NULL, 0, order, common)) {
-        free(order);
-        return NULL;
+    cholmod_common *common = &solver->common;
+    if (like && like->size == solver->size) return cholmod_copy_factor(like->symbolic, common);
+    if (solver->place) {
+        common->nmethods = 1;
+        common->method[0].ordering = CHOLMOD_NATURAL;
+        common->postorder = false;
     }
-    for (size_t n = 3 * nodes; n-- > 0;) order[n] = 3 * order[n / 3] + (int)(n % 3);
-    return order;
+    return cholmod_analyze(matrix, common);
 }
 
-/* The order and the places of a factor's entries: of nodes' matrices for all three axes from the
- * nodes alone, of others as CHOLMOD finds best. */
-static cholmod_factor *analyse(cholmod_sparse *matrix, const RefSparse *M, cholmod_common *common)
+/* The matrix as it is factorised, and the places of its nodes, if they have any. */
+static cholmod_sparse *arrange(const RefSolver *like, const RefMatrices *matrices, double shift,
+                               RefSolver *solver)
 {
-    if (3 * (size_t)M->columns != matrix->ncol) return cholmod_analyze(matrix, common);
-    int *order = order_nodes(M, common);
-    if (!order) return NULL;
-    common->nmethods = 1;
-    common->method[0].ordering = CHOLMOD_GIVEN;
-    cholmod_factor *symbolic = cholmod_analyze_p(matrix, order, NULL, 0, common);
-    free(order);
-    return symbolic;
+    cholmod_common *common = &solver->common;
+    if (solver->rows || !ref_node_order_fits(matrices)) {
+        cholmod_sparse *matrix = shifted(matrices, shift, common);
+        return matrix && solver->rows ? held(matrix, matrices, &solver->A, common) : matrix;
+    }
+    size_t nodes = (size_t)matrices->mass.columns;
+    solver->place = like && like->place ? sm_copy(like->place, nodes, sizeof *solver->place)
+                                        : ref_node_order(&matrices->mass, common);
+    return solver->place ? ref_node_ordered(matrices, shift, solver->place, common) : NULL;
 }
 
 static SmCode say_failure(int status, int columns, SmError *error)
@@ -188,11 +201,8 @@ static SmCode create(const RefSolver *like, const RefMatrices *matrices, double 
     solver->size = matrices->stiffness.columns;
     if (rows) solver->A = ref_rows_copy(rows);
     solver->rows = (int)solver->A.count;
-    cholmod_sparse *matrix = shifted(matrices, shift, common);
-    if (matrix && solver->rows) matrix = held(matrix, matrices, &solver->A, common);
-    if (matrix)
-        solver->symbolic = like ? cholmod_copy_factor(like->symbolic, common)
-                                : analyse(matrix, &matrices->mass, common);
+    cholmod_sparse *matrix = arrange(like, matrices, shift, solver);
+    if (matrix) solver->symbolic = analyse(like, matrix, solver);
     if (solver->symbolic) solver->factor = cholmod_copy_factor(solver->symbolic, common);
     if (solver->factor) factorise(matrix, solver);
     cholmod_free_sparse(&matrix, common);
@@ -231,7 +241,8 @@ void ref_solver_destroy(RefSolver *solver)
     }
     cholmod_finish(&solver->common);
     ref_rows_free(&solver->A);
-    sm_free_all(solver->response, solver->S, solver->order, solver->y, solver);
+    sm_free_all(solver->place, solver->placed, solver->response, solver->S, solver->order,
+                solver->y, solver);
 }
 
 /* y = S^-1 y over the rows that count, in their order. */
