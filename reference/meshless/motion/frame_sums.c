@@ -6,7 +6,7 @@
 
 #include "../../../lib/simd/real.h"
 
-enum { LANES = REF_SKIN_LANES, TILE = REF_FRAME_TILE };
+enum { LANES = REF_SKIN_LANES };
 
 static void apply(int modes, int rows, const double *row, const double *z, double *sums)
 {
@@ -159,28 +159,30 @@ static void spread(int count, const int *node, const double (*slope)[REF_FRAME_S
     }
 }
 
-/* Four rows of sums, a tile wide, which stay in registers. */
-static void square_tile(int rows, int columns, const double *left, const double *right, double *sum)
+/* Sums that stay in registers: some rows of them, two vectors wide. */
+enum { HIGH = SM_VECTOR_BYTES < 64 ? 4 : 8, WIDE = SM_VECTOR_BYTES / sizeof(double) };
+typedef double Wide __attribute__((vector_size(SM_VECTOR_BYTES), aligned(sizeof(double))));
+
+static void square_block(int rows, int columns, const double *left, const double *right,
+                         double *sum)
 {
-    double w[TILE] = {0}, x[TILE] = {0}, y[TILE] = {0}, z[TILE] = {0};
-    for (int r = 0; r < rows; r++, left += columns, right += columns)
-        for (int j = 0; j < TILE; j++) {
-            w[j] += left[0] * right[j];
-            x[j] += left[1] * right[j];
-            y[j] += left[2] * right[j];
-            z[j] += left[3] * right[j];
+    Wide at[HIGH][2] = {{{0}}};
+    for (int r = 0; r < rows; r++, left += columns, right += columns) {
+        const Wide first = *(const Wide *)right, second = *(const Wide *)(right + WIDE);
+        for (int i = 0; i < HIGH; i++) {
+            at[i][0] += first * left[i];
+            at[i][1] += second * left[i];
         }
-    memcpy(sum, w, sizeof w);
-    memcpy(sum + columns, x, sizeof x);
-    memcpy(sum + 2 * columns, y, sizeof y);
-    memcpy(sum + 3 * columns, z, sizeof z);
+    }
+    for (int i = 0; i < HIGH; i++, sum += columns)
+        for (int k = 0; k < 2; k++) *(Wide *)(sum + k * WIDE) = at[i][k];
 }
 
 static void square(int rows, int columns, const double *row, double *sum)
 {
-    for (int i = 0; i < columns; i += 4)
-        for (int j = i / TILE * TILE; j < columns; j += TILE)
-            square_tile(rows, columns, row + i, row + j, sum + i * columns + j);
+    for (int j = 0; j < columns; j += 2 * WIDE) /* these columns stay near */
+        for (int i = 0; i < j + 2 * WIDE; i += HIGH)
+            square_block(rows, columns, row + i, row + j, sum + i * columns + j);
 }
 
 const RefFrameSums SM_ISA_NAME(ref_frame_sums) = {apply, add,    place,  weigh,

@@ -142,6 +142,18 @@ static void square_rows(const RefThinWork *work, RefElement *element)
             }
 }
 
+/* Room for rows of so many columns, where vectors like them. */
+static void make_rows(long columns, RefThinWork *work)
+{
+    if (columns <= work->columns) return;
+    size_t size = REF_SAMPLES_PER_CELL * (size_t)columns;
+    sm_free_all(work->strain, work->shape, work->square);
+    work->columns = columns;
+    work->strain = sm_alloc(6 * size, sizeof *work->strain);
+    work->shape = sm_alloc(size, sizeof *work->shape);
+    work->square = sm_alloc((size_t)(columns * columns), sizeof *work->square);
+}
+
 int ref_thin_element(const double (*X)[3], const RefSamples *samples, long cell, double thickness,
                      const RefMaterial *material, RefThinWork *work, RefElement *element)
 {
@@ -155,9 +167,7 @@ int ref_thin_element(const double (*X)[3], const RefSamples *samples, long cell,
     }
     element->count = count;
     memcpy(element->node, work->node, (size_t)count * sizeof *work->node);
-    sm_make_room(work->strain, work->room[0], 6 * REF_SAMPLES_PER_CELL * wide);
-    sm_make_room(work->shape, work->room[1], REF_SAMPLES_PER_CELL * narrow);
-    sm_make_room(work->square, work->room[2], wide * wide);
+    make_rows(wide, work);
     memset(work->strain, 0, (size_t)(6 * REF_SAMPLES_PER_CELL * wide) * sizeof(double));
     memset(work->shape, 0, (size_t)(REF_SAMPLES_PER_CELL * narrow) * sizeof(double));
     for (int n = 0; n < REF_SAMPLES_PER_CELL; n++)

@@ -32,7 +32,7 @@ typedef struct {
     double *strain;     /* [6 samples][columns] roots of the stiffness: weighted strains' rows */
     double *shape;      /* [samples][columns] and of the mass */
     double *square;     /* [columns][columns] */
-    long room[3];
+    long columns;       /* that there is room for */
 } RefThinWork;
 
 RefThinWork ref_thin_work(long nodes);
