@@ -112,6 +112,49 @@ static void weigh(const RefSkinShare *share, const int *column, float *row)
         }
 }
 
+/* Parts side by side, four and two, and one parameter's entries of six rows. */
+typedef double Four __attribute__((vector_size(4 * sizeof(double)), aligned(sizeof(double))));
+typedef double Two __attribute__((vector_size(2 * sizeof(double)), aligned(sizeof(double))));
+
+static void derive(int count, const int *node, const double (*part)[6], const double (*u)[3],
+                   double sum[3][6])
+{
+    Four four[3] = {{0}};
+    Two two[3] = {{0}};
+    for (int n = 0; n < count; n++) {
+        const Four first = *(const Four *)part[n];
+        const Two second = *(const Two *)(part[n] + 4);
+        for (int d = 0; d < 3; d++) {
+            four[d] += first * u[node[n]][d];
+            two[d] += second * u[node[n]][d];
+        }
+    }
+    for (int d = 0; d < 3; d++) {
+        *(Four *)sum[d] = four[d];
+        *(Two *)(sum[d] + 4) = two[d];
+    }
+}
+
+static void root(int count, const int *node, const int *place, const double (*part)[6],
+                 const double root[6][6][3], int columns, double *row)
+{
+    for (int n = 0; n < count; n++) {
+        Four four[4] = {{0}};
+        Two two = {0};
+        double at[6][3];
+        for (int m = 0; m < 6; m++) {
+            const double *from = root[m][0];
+            for (int k = 0; k < 4; k++) four[k] += *(const Four *)(from + 4 * k) * part[n][m];
+            two += *(const Two *)(from + 16) * part[n][m];
+        }
+        for (int k = 0; k < 4; k++) *(Four *)(at[0] + 4 * k) = four[k];
+        *(Two *)(at[0] + 16) = two;
+        double *to = row + 3 * place[node[n]];
+        for (int i = 0; i < 6; i++, to += columns)
+            for (int d = 0; d < 3; d++) to[d] += at[i][d];
+    }
+}
+
 /* Slopes side by side, anywhere where doubles may be. */
 typedef double Slopes
     __attribute__((vector_size(REF_FRAME_SLOPES * sizeof(double)), aligned(sizeof(double))));
@@ -185,5 +228,5 @@ static void square(int rows, int columns, const double *row, double *sum)
             square_block(rows, columns, row + i, row + j, sum + i * columns + j);
 }
 
-const RefFrameSums SM_ISA_NAME(ref_frame_sums) = {apply, add,    place,  weigh,
-                                                  parts, slopes, spread, square};
+const RefFrameSums SM_ISA_NAME(ref_frame_sums) = {apply, add,   place,  weigh,  derive,
+                                                  root,  parts, slopes, spread, square};

@@ -23,6 +23,15 @@ typedef struct {
      * of REF_SKIN_SHARED of them: times are zero of points that are none. */
     void (*weigh)(const RefSkinShare *share, const int *column, float *row);
 
+    /* sum[d][m] = sum over the functions of part[n][m] u[node[n]][d]. */
+    void (*derive)(int count, const int *node, const double (*part)[6], const double (*u)[3],
+                   double sum[3][6]);
+
+    /* row[i][3 place[node[n]] + d] += sum over m of part[n][m] root[m][i][d], of six rows of
+     * `columns`. */
+    void (*root)(int count, const int *node, const int *place, const double (*part)[6],
+                 const double root[6][6][3], int columns, double *row);
+
     /* sum[m][l] = sum over the functions of part[n][m] field[node[n]][l], of eight fields. */
     void (*parts)(int count, const int *node, const double (*part)[6],
                   const double (*field)[REF_FRAME_SLOPES], double sum[6][REF_FRAME_SLOPES]);

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "../motion/frame_sums.h"
+
 RefFieldPlace ref_field_sample(const RefSamples *samples, long p, const double (*X)[3])
 {
     long at = samples->start[p];
@@ -24,11 +26,8 @@ void ref_field_value(const RefFieldPlace *place, double value[3])
 /* Strains are linear in the field's derivatives: of the sums of these once, not of each node's. */
 void ref_field_strains(const RefFieldPlace *place, const RefFrame *frame, double strain[6])
 {
-    double sum[3][6] = {{0}}, B[6][3];
-    for (int n = 0; n < place->count; n++)
-        for (int d = 0; d < 3; d++)
-            for (int m = 1; m < 6; m++)
-                sum[d][m] += place->part[n][m] * place->u[place->node[n]][d];
+    double sum[3][6], B[6][3];
+    ref_frame_sums.derive(place->count, place->node, place->part, place->u, sum);
     memset(strain, 0, sizeof(double[6]));
     for (int d = 0; d < 3; d++) {
         ref_thin_strains(frame, sum[d], B);

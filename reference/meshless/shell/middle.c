@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../../../lib/vector.h"
+#include "../motion/frame_sums.h"
 #include "../solve/solver.h"
 
 /* Sums of L^2 phi_I phi_J, of whole pairs alone: functions of one node meet in its diagonal. */
@@ -76,6 +77,20 @@ static void complete(RefFrame *frame)
         for (int n = 0; n < 2; n++) frame->symbol[m][n] = sm_dot(up[n], frame->second[m]);
 }
 
+RefFrame ref_middle_at(const double (*X)[3], int count, const int *node, const double (*part)[6])
+{
+    RefFrame frame;
+    double sum[3][6];
+    ref_frame_sums.derive(count, node, part, X, sum);
+    for (int d = 0; d < 3; d++) {
+        frame.x[d] = sum[d][0];
+        for (int k = 0; k < 2; k++) frame.tangent[k][d] = sum[d][1 + k];
+        for (int m = 0; m < 3; m++) frame.second[m][d] = sum[d][3 + m];
+    }
+    complete(&frame);
+    return frame;
+}
+
 /* One function's share of x and its derivatives. */
 static void add(const double X[3], const double part[6], RefFrame *frame)
 {
@@ -84,14 +99,6 @@ static void add(const double X[3], const double part[6], RefFrame *frame)
         for (int k = 0; k < 2; k++) frame->tangent[k][d] += part[1 + k] * X[d];
         for (int m = 0; m < 3; m++) frame->second[m][d] += part[3 + m] * X[d];
     }
-}
-
-RefFrame ref_middle_at(const double (*X)[3], int count, const int *node, const double (*part)[6])
-{
-    RefFrame frame = {.area = 0};
-    for (int n = 0; n < count; n++) add(X[node[n]], part[n], &frame);
-    complete(&frame);
-    return frame;
 }
 
 RefFrame ref_middle_of(const double (*X)[3], const RefShape *shape)

@@ -63,18 +63,24 @@ void ref_thin_strains(const RefFrame *frame, const double part[6], double B[6][3
     }
 }
 
-/* Rows whose products are the blocks of the stiffness, of one function at one sample: added to a
- * matrix of this many columns. */
-static void add_rows(const double B[6][3], const double G[3][3], const double weight[2],
-                     int columns, double *row)
+/* What a function's parts are multiplied by to rows whose products are the blocks of the stiffness.
+ */
+static void find_roots(const RefFrame *frame, const double weight[2], double poisson,
+                       double root[6][6][3])
 {
-    for (int kind = 0; kind < 2; kind++)
-        for (int i = 0; i < 3; i++, row += columns)
+    double G[3][3], B[6][3];
+    ref_thin_factor(frame->inverse, poisson, G);
+    for (int m = 0; m < 6; m++) {
+        double one[6] = {0};
+        one[m] = 1;
+        ref_thin_strains(frame, one, B);
+        for (int i = 0; i < 6; i++)
             for (int d = 0; d < 3; d++) {
                 double sum = 0;
-                for (int j = i; j < 3; j++) sum += G[i][j] * B[3 * kind + j][d];
-                row[d] += weight[kind] * sum;
+                for (int j = i % 3; j < 3; j++) sum += G[i % 3][j] * B[i / 3 * 3 + j][d];
+                root[m][i][d] = weight[i / 3] * sum;
             }
+    }
 }
 
 /* Writes a sample's rows; false where they are none of the stiffness. A node that is there twice
@@ -87,19 +93,16 @@ static bool write_sample(const double (*X)[3], const RefSamples *samples, long p
     const int *node = samples->node + from;
     const double(*part)[6] = (const double(*)[6])(samples->part + from);
     RefFrame frame = ref_middle_at(X, count, node, part);
-    double nu = material->poisson, G[3][3], B[6][3], area = samples->area[p];
-    double weight[2], root = sqrt(area * t);
+    double weight[2], root[6][6][3], area = samples->area[p], times = sqrt(area * t);
     ref_thin_weights(area, t, material, weight);
     bool stiff = ref_thin_is_stiff(&frame, area / samples->weight[p], samples->trace[p]);
     for (int e = 0; e < count; e++)
-        work->shape[sample * ref_frame_columns(nodes) + work->number[node[e]]] += root * part[e][0];
+        work->shape[sample * ref_frame_columns(nodes) + work->number[node[e]]] +=
+            times * part[e][0];
     if (!stiff) return false;
-    ref_thin_factor(frame.inverse, nu, G);
-    for (int e = 0; e < count; e++) {
-        ref_thin_strains(&frame, part[e], B);
-        add_rows((const double(*)[3])B, (const double(*)[3])G, weight, columns,
-                 work->strain + 6 * sample * columns + 3 * work->number[node[e]]);
-    }
+    find_roots(&frame, weight, material->poisson, root);
+    ref_frame_sums.root(count, node, work->number, part, (const double(*)[6][3])root, columns,
+                        work->strain + 6 * sample * columns);
     return true;
 }
 
