@@ -37,8 +37,8 @@ void ref_cracks_create(const RefChart *chart, double margin, RefCracks *cracks)
 void ref_cracks_free(RefCracks *cracks)
 {
     ref_chart_images_free(&cracks->images);
-    sm_free_all(cracks->bin, cracks->binned, cracks->near, cracks->mark, cracks->piece, cracks->arm,
-                cracks->settled);
+    sm_free_all(cracks->bin, cracks->binned, cracks->near, cracks->near_box, cracks->mark,
+                cracks->piece, cracks->arm, cracks->settled);
     *cracks = (RefCracks){.chart = NULL};
 }
 
@@ -106,7 +106,12 @@ static void bins_of_piece(const RefCracks *cracks, const RefCrackPiece *piece, i
 static void make_marks(RefCracks *cracks)
 {
     long words = sm_room_for(cracks->pieces / 64);
-    sm_make_room(cracks->near, cracks->near_room, cracks->pieces);
+    if (cracks->pieces > cracks->near_room) {
+        cracks->near_room = sm_room_for(cracks->pieces);
+        cracks->near = sm_realloc(cracks->near, (size_t)cracks->near_room, sizeof *cracks->near);
+        cracks->near_box =
+            sm_realloc(cracks->near_box, (size_t)cracks->near_room, sizeof *cracks->near_box);
+    }
     if (cracks->pieces / 64 < cracks->mark_room) return;
     cracks->mark = sm_widen(cracks->mark, cracks->mark_room, words, sizeof *cracks->mark, 0);
     cracks->mark_room = words;
@@ -137,11 +142,17 @@ static void bin_pieces(RefCracks *cracks)
     cracks->low[0] = INFINITY; /* nothing is in this box */
 }
 
+static bool meet(const double box[2][2], const double low[2], const double high[2])
+{
+    return (box[0][0] <= high[0]) & (box[1][0] >= low[0]) & (box[0][1] <= high[1]) &
+           (box[1][1] >= low[1]);
+}
+
 static bool touches(const RefCrackPiece *piece, const double low[2], const double high[2])
 {
-    double from[2], to[2];
-    box_of(piece, from, to);
-    return from[0] <= high[0] && to[0] >= low[0] && from[1] <= high[1] && to[1] >= low[1];
+    double box[2][2];
+    box_of(piece, box[0], box[1]);
+    return meet((const double(*)[2])box, low, high);
 }
 
 /* Takes all pieces whose boxes touch a box, rising. A piece is in several bins. */
@@ -160,7 +171,9 @@ static void gather(RefCracks *cracks, const double low[2], const double high[2])
     for (long word = 0; 64 * word < cracks->pieces; word++)
         for (; cracks->mark[word]; cracks->mark[word] &= cracks->mark[word] - 1) {
             int p = (int)(64 * word) + __builtin_ctzll(cracks->mark[word]);
-            if (touches(cracks->piece + p, low, high)) cracks->near[cracks->near_count++] = p;
+            double(*own)[2] = cracks->near_box[cracks->near_count];
+            box_of(cracks->piece + p, own[0], own[1]);
+            if (meet((const double(*)[2])own, low, high)) cracks->near[cracks->near_count++] = p;
         }
 }
 
@@ -394,34 +407,17 @@ static void box_of_ways(const RefGrid *grid, const double from[2], double low[2]
     }
 }
 
-static int plane_of(const RefCracks *cracks, const RefGrid *grid)
-{
-    const double first[2] = {grid->at[0][0], grid->at[1][0]};
-    return ref_chart_plane(cracks->chart, first);
-}
-
-static const int *among_grid(const RefCracks *cracks, const RefGrid *grid, const double from[2],
-                             int *count)
-{
-    double low[2], high[2];
-    box_of_ways(grid, from, low, high);
-    return among(cracks, low, high, count);
-}
-
 static void place_of(const RefGrid *grid, int p, double x[2])
 {
     x[0] = grid->at[0][p % grid->count[0]];
     x[1] = grid->at[1][p / grid->count[0]];
 }
 
-/* Whether a piece may be in a way from `from` to a place of a grid, all in that plane: it is not
- * apart from the box of all, nor are they all on one side of it. */
-static bool may_cross(const RefCrackPiece *piece, int plane, const RefGrid *grid,
-                      const double from[2])
+/* Whether the places of a grid and that from which they are seen are not all on one side of a
+ * piece. */
+static bool may_cross(const RefCrackPiece *piece, const RefGrid *grid, const double from[2])
 {
-    double low[2], high[2], along[2], way[2];
-    box_of_ways(grid, from, low, high);
-    if (piece->at.plane != plane || !touches(piece, low, high)) return false;
+    double along[2], way[2];
     way_from(piece->at.end[0], piece->at.end[1], along);
     way_from(piece->at.end[0], from, way);
     double side = cross(along, way);
@@ -502,25 +498,61 @@ static void take_from(const RefCrackPiece *piece, const double x[2], const doubl
         memset(part, 0, 6 * sizeof *part);
 }
 
+/* The ways from a place to those of a grid, and the pieces near them, one after the other. */
+typedef struct {
+    const RefCracks *cracks;
+    const RefGrid *grid;
+    const double *from;
+    double low[2], high[2]; /* a box of all ways */
+    int plane, count, next;
+    const int *member;
+    unsigned char crossing[REF_GRID_SIDE * REF_GRID_SIDE]; /* the ways that a piece is in */
+} Fan;
+
+static Fan fan_of(const RefCracks *cracks, const RefGrid *grid, const double from[2])
+{
+    Fan fan = {.cracks = cracks, .grid = grid, .from = from};
+    const double first[2] = {grid->at[0][0], grid->at[1][0]};
+    box_of_ways(grid, from, fan.low, fan.high);
+    fan.member = among(cracks, fan.low, fan.high, &fan.count);
+    fan.plane = ref_chart_plane(cracks->chart, first);
+    return fan;
+}
+
+/* The next whose box meets that of the ways; NULL: none. */
+static const RefCrackPiece *next_piece(Fan *fan)
+{
+    const RefCracks *cracks = fan->cracks;
+    while (fan->next < fan->count) {
+        int n = fan->next++;
+        const RefCrackPiece *piece = cracks->piece + fan->member[n];
+        if (meet((const double(*)[2])cracks->near_box[n], fan->low, fan->high) &&
+            piece->at.plane == fan->plane)
+            return piece;
+    }
+    return NULL;
+}
+
+static bool in_the_way(Fan *fan, const RefCrackPiece *piece)
+{
+    return may_cross(piece, fan->grid, fan->from) &&
+           cross_grid(fan->cracks, piece, fan->grid, fan->from, fan->crossing);
+}
+
 bool ref_cracks_fan(const RefCracks *cracks, const RefGrid *grid, const double from[2],
                     double reach, double (*part)[6])
 {
-    unsigned char crossing[REF_GRID_SIDE * REF_GRID_SIDE];
-    int count, places = grid->count[0] * grid->count[1];
+    Fan fan = fan_of(cracks, grid, from);
+    int places = grid->count[0] * grid->count[1];
     bool any = false;
-    const int *member = among_grid(cracks, grid, from, &count);
-    int plane = plane_of(cracks, grid);
-    for (int n = 0; n < count; n++) {
-        const RefCrackPiece *piece = cracks->piece + member[n];
-        if (!may_cross(piece, plane, grid, from) ||
-            !cross_grid(cracks, piece, grid, from, crossing))
-            continue;
+    for (const RefCrackPiece *piece; (piece = next_piece(&fan));) {
+        if (!in_the_way(&fan, piece)) continue;
         for (int p = 0; !any && p < places; p++) memcpy(part[p], whole, sizeof whole);
         any = true;
         for (int p = 0; p < places; p++) {
             double x[2];
             place_of(grid, p, x);
-            if (crossing[p]) take_from(piece, x, from, TIP_REACH * reach, part[p]);
+            if (fan.crossing[p]) take_from(piece, x, from, TIP_REACH * reach, part[p]);
         }
     }
     return any;
@@ -529,17 +561,11 @@ bool ref_cracks_fan(const RefCracks *cracks, const RefGrid *grid, const double f
 bool ref_cracks_fan_changed(const RefCracks *cracks, const RefGrid *grid, const double from[2],
                             double reach)
 {
-    unsigned char crossing[REF_GRID_SIDE * REF_GRID_SIDE];
-    int count;
-    const int *member = among_grid(cracks, grid, from, &count);
-    int plane = plane_of(cracks, grid);
-    for (int n = 0; n < count; n++) {
-        const RefCrackPiece *piece = cracks->piece + member[n];
+    Fan fan = fan_of(cracks, grid, from);
+    for (const RefCrackPiece *piece; (piece = next_piece(&fan));) {
         bool changes = piece->changed == cracks->now &&
                        (piece->born == cracks->now || piece->before < TIP_REACH * reach);
-        if (changes && may_cross(piece, plane, grid, from) &&
-            cross_grid(cracks, piece, grid, from, crossing))
-            return true;
+        if (changes && in_the_way(&fan, piece)) return true;
     }
     return false;
 }

@@ -49,7 +49,8 @@ typedef struct {
     double low[2], high[2]; /* a box, and all pieces whose boxes touch it */
     long bin_room, near_count, near_room, mark_room;
     int *near;
-    uint64_t *mark; /* [pieces / 64] bits of those that are gathered; none in between */
+    double (*near_box)[2][2]; /* [near_count] their lower and upper ends */
+    uint64_t *mark;           /* [pieces / 64] bits of those that are gathered; none in between */
     RefChartImages images;
 } RefCracks;
 
