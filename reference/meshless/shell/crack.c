@@ -26,7 +26,7 @@ static void way_from(const double a[2], const double b[2], double way[2])
 
 static double length_of(const double a[2])
 {
-    return hypot(a[0], a[1]);
+    return sqrt(a[0] * a[0] + a[1] * a[1]);
 }
 
 void ref_cracks_create(const RefChart *chart, double margin, RefCracks *cracks)
@@ -37,8 +37,9 @@ void ref_cracks_create(const RefChart *chart, double margin, RefCracks *cracks)
 void ref_cracks_free(RefCracks *cracks)
 {
     ref_chart_images_free(&cracks->images);
-    sm_free_all(cracks->bin, cracks->binned, cracks->near, cracks->near_box, cracks->mark,
-                cracks->piece, cracks->arm, cracks->settled);
+    sm_free_all(cracks->bin, cracks->binned, cracks->near.piece, cracks->near.box,
+                cracks->stirred.piece, cracks->stirred.box, cracks->mark, cracks->piece,
+                cracks->arm, cracks->settled);
     *cracks = (RefCracks){.chart = NULL};
 }
 
@@ -102,16 +103,10 @@ static void bins_of_piece(const RefCracks *cracks, const RefCrackPiece *piece, i
     bins_of(cracks, low, high, bin);
 }
 
-/* Room for all pieces. */
+/* Room for marks of all pieces. */
 static void make_marks(RefCracks *cracks)
 {
     long words = sm_room_for(cracks->pieces / 64);
-    if (cracks->pieces > cracks->near_room) {
-        cracks->near_room = sm_room_for(cracks->pieces);
-        cracks->near = sm_realloc(cracks->near, (size_t)cracks->near_room, sizeof *cracks->near);
-        cracks->near_box =
-            sm_realloc(cracks->near_box, (size_t)cracks->near_room, sizeof *cracks->near_box);
-    }
     if (cracks->pieces / 64 < cracks->mark_room) return;
     cracks->mark = sm_widen(cracks->mark, cracks->mark_room, words, sizeof *cracks->mark, 0);
     cracks->mark_room = words;
@@ -148,11 +143,18 @@ static bool meet(const double box[2][2], const double low[2], const double high[
            (box[1][1] >= low[1]);
 }
 
-static bool touches(const RefCrackPiece *piece, const double low[2], const double high[2])
+/* Appends a piece if its box touches another. */
+static void note(const RefCracks *cracks, int p, const double low[2], const double high[2],
+                 RefCracksNear *near)
 {
-    double box[2][2];
-    box_of(piece, box[0], box[1]);
-    return meet((const double(*)[2])box, low, high);
+    if (near->count == near->room) {
+        near->room = sm_room_for(near->count);
+        near->piece = sm_realloc(near->piece, (size_t)near->room, sizeof *near->piece);
+        near->box = sm_realloc(near->box, (size_t)near->room, sizeof *near->box);
+    }
+    double(*own)[2] = near->box[near->count];
+    box_of(cracks->piece + p, own[0], own[1]);
+    if (meet((const double(*)[2])own, low, high)) near->piece[near->count++] = p;
 }
 
 /* Takes all pieces whose boxes touch a box, rising. A piece is in several bins. */
@@ -167,14 +169,11 @@ static void gather(RefCracks *cracks, const double low[2], const double high[2])
         for (long n = from; n < end; n++)
             cracks->mark[cracks->binned[n] / 64] |= UINT64_C(1) << cracks->binned[n] % 64;
     }
-    cracks->near_count = 0;
+    cracks->near.count = 0;
     for (long word = 0; 64 * word < cracks->pieces; word++)
-        for (; cracks->mark[word]; cracks->mark[word] &= cracks->mark[word] - 1) {
-            int p = (int)(64 * word) + __builtin_ctzll(cracks->mark[word]);
-            double(*own)[2] = cracks->near_box[cracks->near_count];
-            box_of(cracks->piece + p, own[0], own[1]);
-            if (meet((const double(*)[2])own, low, high)) cracks->near[cracks->near_count++] = p;
-        }
+        for (; cracks->mark[word]; cracks->mark[word] &= cracks->mark[word] - 1)
+            note(cracks, (int)(64 * word) + __builtin_ctzll(cracks->mark[word]), low, high,
+                 &cracks->near);
 }
 
 bool ref_cracks_look(const RefCracks *cracks, const double low[2], const double high[2])
@@ -182,7 +181,7 @@ bool ref_cracks_look(const RefCracks *cracks, const double low[2], const double 
     RefCracks *look = (RefCracks *)cracks;
     if (look->stale) bin_pieces(look);
     gather(look, low, high);
-    return look->near_count > 0;
+    return look->near.count > 0;
 }
 
 /* The pieces whose boxes touch that of two places, and others near it, rising: of the box that was
@@ -203,8 +202,8 @@ static const int *among(const RefCracks *cracks, const double a[2], const double
         high[d] += wide;
     }
     if (!inside) ref_cracks_look(cracks, low, high);
-    *count = (int)cracks->near_count;
-    return cracks->near;
+    *count = (int)cracks->near.count;
+    return cracks->near.piece;
 }
 
 /* Moves the tip on: what is ahead of the arm's pieces grows by `more`. */
@@ -498,15 +497,14 @@ static void take_from(const RefCrackPiece *piece, const double x[2], const doubl
         memset(part, 0, 6 * sizeof *part);
 }
 
-/* The ways from a place to those of a grid, and the pieces near them, one after the other. */
+/* The ways from a place to those of a grid. */
 typedef struct {
     const RefCracks *cracks;
     const RefGrid *grid;
     const double *from;
     double low[2], high[2]; /* a box of all ways */
-    int plane, count, next;
-    const int *member;
-    unsigned char crossing[REF_GRID_SIDE * REF_GRID_SIDE]; /* the ways that a piece is in */
+    int plane;
+    unsigned char crossing[REF_GRID_SIDE * REF_GRID_SIDE]; /* those that a piece is in */
 } Fan;
 
 static Fan fan_of(const RefCracks *cracks, const RefGrid *grid, const double from[2])
@@ -514,21 +512,18 @@ static Fan fan_of(const RefCracks *cracks, const RefGrid *grid, const double fro
     Fan fan = {.cracks = cracks, .grid = grid, .from = from};
     const double first[2] = {grid->at[0][0], grid->at[1][0]};
     box_of_ways(grid, from, fan.low, fan.high);
-    fan.member = among(cracks, fan.low, fan.high, &fan.count);
     fan.plane = ref_chart_plane(cracks->chart, first);
     return fan;
 }
 
-/* The next whose box meets that of the ways; NULL: none. */
-static const RefCrackPiece *next_piece(Fan *fan)
+/* The first of some pieces, from number *n of them, whose box meets that of the ways, and *n goes
+ * beyond it; NULL: none. */
+static const RefCrackPiece *next_piece(const Fan *fan, const RefCracksNear *near, long *n)
 {
-    const RefCracks *cracks = fan->cracks;
-    while (fan->next < fan->count) {
-        int n = fan->next++;
-        const RefCrackPiece *piece = cracks->piece + fan->member[n];
-        if (meet((const double(*)[2])cracks->near_box[n], fan->low, fan->high) &&
-            piece->at.plane == fan->plane)
-            return piece;
+    while (*n < near->count) {
+        const RefCrackPiece *piece = fan->cracks->piece + near->piece[*n];
+        bool meets = meet((const double(*)[2])near->box[(*n)++], fan->low, fan->high);
+        if (meets && piece->at.plane == fan->plane) return piece;
     }
     return NULL;
 }
@@ -543,9 +538,11 @@ bool ref_cracks_fan(const RefCracks *cracks, const RefGrid *grid, const double f
                     double reach, double (*part)[6])
 {
     Fan fan = fan_of(cracks, grid, from);
-    int places = grid->count[0] * grid->count[1];
+    int count, places = grid->count[0] * grid->count[1];
     bool any = false;
-    for (const RefCrackPiece *piece; (piece = next_piece(&fan));) {
+    among(cracks, fan.low, fan.high, &count);
+    const RefCrackPiece *piece;
+    for (long n = 0; (piece = next_piece(&fan, &cracks->near, &n));) {
         if (!in_the_way(&fan, piece)) continue;
         for (int p = 0; !any && p < places; p++) memcpy(part[p], whole, sizeof whole);
         any = true;
@@ -558,15 +555,27 @@ bool ref_cracks_fan(const RefCracks *cracks, const RefGrid *grid, const double f
     return any;
 }
 
+bool ref_cracks_stir(const RefCracks *cracks, const double low[2], const double high[2])
+{
+    const double middle[2] = {(low[0] + high[0]) / 2, (low[1] + high[1]) / 2};
+    int plane = ref_chart_plane(cracks->chart, middle);
+    RefCracksNear *stirred = &((RefCracks *)cracks)->stirred;
+    stirred->count = 0;
+    for (long p = 0; p < cracks->pieces; p++)
+        if (cracks->piece[p].changed == cracks->now && cracks->piece[p].at.plane == plane)
+            note(cracks, (int)p, low, high, stirred);
+    return stirred->count > 0;
+}
+
 bool ref_cracks_fan_changed(const RefCracks *cracks, const RefGrid *grid, const double from[2],
                             double reach)
 {
     Fan fan = fan_of(cracks, grid, from);
-    for (const RefCrackPiece *piece; (piece = next_piece(&fan));) {
-        bool changes = piece->changed == cracks->now &&
-                       (piece->born == cracks->now || piece->before < TIP_REACH * reach);
-        if (changes && in_the_way(&fan, piece)) return true;
-    }
+    const RefCrackPiece *piece;
+    for (long n = 0; (piece = next_piece(&fan, &cracks->stirred, &n));)
+        if ((piece->born == cracks->now || piece->before < TIP_REACH * reach) &&
+            in_the_way(&fan, piece))
+            return true;
     return false;
 }
 
@@ -577,18 +586,6 @@ bool ref_cracks_part(const RefCracks *cracks, const double x[2], const double fr
     int plane = ref_chart_plane(cracks->chart, x);
     for (int n = 0; n < count; n++)
         if (crosses(cracks, cracks->piece + member[n], plane, x, from)) return true;
-    return false;
-}
-
-bool ref_cracks_stir(const RefCracks *cracks, const double low[2], const double high[2])
-{
-    const double middle[2] = {(low[0] + high[0]) / 2, (low[1] + high[1]) / 2};
-    int plane = ref_chart_plane(cracks->chart, middle);
-    for (long p = 0; p < cracks->pieces; p++) {
-        const RefCrackPiece *piece = cracks->piece + p;
-        if (piece->changed == cracks->now && piece->at.plane == plane && touches(piece, low, high))
-            return true;
-    }
     return false;
 }
 

@@ -35,6 +35,13 @@ typedef struct {
     bool open;  /* has a tip */
 } RefCrackArm;
 
+/* Pieces, rising, and their boxes' lower and upper ends. */
+typedef struct {
+    long count, room;
+    int *piece;
+    double (*box)[2][2];
+} RefCracksNear;
+
 typedef struct {
     const RefChart *chart; /* the caller's */
     double margin;         /* the largest reach of a cover */
@@ -46,11 +53,11 @@ typedef struct {
     RefCrackArm *settled;   /* [settled_arms] the arms at the last one */
     bool stale;             /* private, as is the rest: pieces are not in these bins yet */
     int *bin, *binned;      /* where each bin's pieces begin, and their numbers */
-    double low[2], high[2]; /* a box, and all pieces whose boxes touch it */
-    long bin_room, near_count, near_room, mark_room;
-    int *near;
-    double (*near_box)[2][2]; /* [near_count] their lower and upper ends */
-    uint64_t *mark;           /* [pieces / 64] bits of those that are gathered; none in between */
+    double low[2], high[2]; /* a box, and */
+    RefCracksNear near;     /* all pieces whose boxes touch it */
+    RefCracksNear stirred;  /* those of another box that have changed */
+    uint64_t *mark;         /* [pieces / 64] bits of those that are gathered; none in between */
+    long bin_room, mark_room;
     RefChartImages images;
 } RefCracks;
 
@@ -103,13 +110,13 @@ bool ref_cracks_look(const RefCracks *cracks, const double low[2], const double 
 bool ref_cracks_fan(const RefCracks *cracks, const RefGrid *grid, const double from[2],
                     double reach, double (*part)[6]);
 
-/* Whether changes that are not settled change what gets to any place of a grid. */
+/* Looks up the pieces, and images of some, that have changes which are not settled and whose boxes
+ * touch a box about a place of a rectangle; whether there are any. O(pieces). */
+bool ref_cracks_stir(const RefCracks *cracks, const double low[2], const double high[2]);
+
+/* Whether those change what gets to any place of a grid, all ways to which are in that box. */
 bool ref_cracks_fan_changed(const RefCracks *cracks, const RefGrid *grid, const double from[2],
                             double reach);
-
-/* Whether there is a change that is not settled of a piece, or an image of one, whose box touches a
- * box about a place of a rectangle. */
-bool ref_cracks_stir(const RefCracks *cracks, const double low[2], const double high[2]);
 
 /* All changes become what was before. O(pieces). */
 void ref_cracks_settle(RefCracks *cracks);

@@ -471,7 +471,6 @@ static bool is_stale(const RefCracked *cracked, long c, const Fresh *fresh)
     for (long n = 0; n < fresh->count; n++)
         if (reached_by(nodes, fresh->place[n], &near, cracks->margin, &grid)) return true;
     if (!ref_cracks_stir(cracks, near.low, near.high)) return false;
-    ref_cracks_look(cracks, near.low, near.high);
     for (long n = 0; n < nodes->count + nodes->images; n++)
         if (reached_by(nodes, n, &near, cracks->margin, &grid) &&
             ref_cracks_fan_changed(cracks, &grid, nodes->position[n], nodes->reach[n]))

@@ -488,7 +488,13 @@ TEST(ways_to_a_grid_are_ways_to_its_places)
             double at[2][REF_GRID_SIDE], from[3] = {0}, part[REF_GRID_SIDE * REF_GRID_SIDE][6];
             RefGrid grid = random_grid(&sheet, step, at, from);
             bool some = ref_cracks_fan(cracks, &grid, from, reach, part), differs = false;
-            bool changed = ref_cracks_fan_changed(cracks, &grid, from, reach);
+            double low[2], high[2];
+            for (int d = 0; d < 2; d++) {
+                low[d] = grid.at[d][0] - 12 * step;
+                high[d] = grid.at[d][0] + 12 * step;
+            }
+            bool changed = ref_cracks_stir(cracks, low, high) &&
+                           ref_cracks_fan_changed(cracks, &grid, from, reach);
             for (int p = 0; p < grid.count[0] * grid.count[1]; p++) {
                 const double x[3] = {grid.at[0][p % grid.count[0]], grid.at[1][p / grid.count[0]]};
                 double now[6] = {0}, before[6] = {0};
