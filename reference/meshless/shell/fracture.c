@@ -183,16 +183,28 @@ static int by_principal(const void *a, const void *b)
     return (p->theta[1] > q->theta[1]) - (p->theta[1] < q->theta[1]);
 }
 
-/* Of the stresses, which are sorted by it. */
+/* Those that are above the strength come first, the largest of them leading; returns how many. */
+static long sort_large(double strength, RefFaceStress *stress, long count)
+{
+    long large = 0;
+    for (long n = 0; n < count; n++) {
+        if (!(stress[n].principal > strength)) continue;
+        RefFaceStress other = stress[large];
+        stress[large++] = stress[n];
+        stress[n] = other;
+    }
+    qsort(stress, (size_t)large, sizeof *stress, by_principal);
+    return large;
+}
+
 static int start_cracks(RefCracked *cracked, const RefFractureOptions *options,
                         RefFaceStress *stress, long count)
 {
     RefCracks *cracks = &cracked->cracks;
     int starts = 0;
-    qsort(stress, (size_t)count, sizeof *stress, by_principal);
-    for (long n = 0; n < count && starts < options->most_starts; n++) {
+    long large = options->most_starts > 0 ? sort_large(options->strength, stress, count) : 0;
+    for (long n = 0; n < large && starts < options->most_starts; n++) {
         const RefFaceStress *at = stress + n;
-        if (!(at->principal > options->strength)) break;
         double far = START_CELLS * edge_at(cracked, at->theta);
         if (ref_cracks_distance(cracks, at->theta, far) < far) continue;
         for (int side = -1; side <= 1; side += 2) {

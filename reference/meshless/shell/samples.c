@@ -270,13 +270,75 @@ static int gather(const double at[2][ALONG], const RefNodes *nodes, double scale
     return count;
 }
 
+/* Samples of a cell whose functions are still to be found. */
+typedef struct {
+    bool is[REF_SAMPLES_PER_CELL];
+    int count;
+} Pending;
+
+/* Room for what the samples see, and all pending that see a node. Others are looked at from beside
+ * where they are. */
+static Pending lay_out(const RefNodes *nodes, RefBasis basis, double edge, int count,
+                       RefSamplesWork *work, RefSamples *samples)
+{
+    int seen[REF_SAMPLES_PER_CELL] = {0};
+    RefShape *shape = &work->shape;
+    Pending pending = {.count = 0};
+    for (int n = 0; n < count; n++)
+        for (int p = 0; p < REF_SAMPLES_PER_CELL; p++) seen[p] += work->node[n].weight[0][p] > 0;
+    for (int pass = 0; pass < 2; pass++) {
+        for (int p = 0; p < REF_SAMPLES_PER_CELL; p++) {
+            if (pass == 0 && seen[p]) pending.count += pending.is[p] = true;
+            if (!pending.is[p]) ref_samples_shape(nodes, basis, edge, samples->theta[p], shape);
+            long at = samples->start[p];
+            samples->start[p + 1] = at + (pending.is[p] ? seen[p] : shape->count);
+            for (int n = 0; pass == 1 && !pending.is[p] && n < shape->count; n++) {
+                samples->node[at + n] = shape->node[n];
+                ref_samples_part(shape, n, samples->part[at + n]);
+            }
+        }
+        size_t all = (size_t)samples->start[REF_SAMPLES_PER_CELL];
+        if (pass == 1) break;
+        samples->node = sm_realloc(NULL, all, sizeof *samples->node);
+        samples->part = sm_realloc(NULL, all, sizeof *samples->part);
+    }
+    return pending;
+}
+
+/* The functions of samples where those of a basis vary no faster than the cell can bear; of the
+ * last basis all, but without slopes where they do. */
+static void take_basis(RefBasis basis, bool last, double edge, int count, RefSamplesWork *work,
+                       Pending *pending, RefSamples *samples)
+{
+    RefCellFound found;
+    bool take[REF_SAMPLES_PER_CELL];
+    int parts[REF_SAMPLES_PER_CELL];
+    long at[REF_SAMPLES_PER_CELL];
+    ref_cell_functions.shape((int)basis, count, edge, work->node, &found);
+    for (int p = 0; p < REF_SAMPLES_PER_CELL; p++) {
+        bool serves = found.pivot[p] > REF_LEAST_PIVOT && found.most[0][p] * edge <= MOST_SLOPE &&
+                      found.most[1][p] * edge * edge <= MOST_SECOND;
+        take[p] = pending->is[p] && (serves || last);
+        pending->is[p] = pending->is[p] && !take[p];
+        pending->count -= take[p];
+        parts[p] = serves ? REF_CELL_PARTS : 1;
+        at[p] = samples->start[p];
+    }
+    for (int n = 0; n < count; n++)
+        for (int p = 0; p < REF_SAMPLES_PER_CELL; p++) {
+            const RefCellNode *of = work->node + n;
+            if (!take[p] || !(of->weight[0][p] > 0)) continue;
+            samples->node[at[p]] = work->member[n];
+            double *part = samples->part[at[p]++];
+            for (int k = 0; k < REF_CELL_PARTS; k++) part[k] = k < parts[p] ? of->part[k][p] : 0;
+        }
+}
+
 void ref_samples_of(const RefQuadtree *tree, long cell, const RefNodes *nodes, RefBasis basis,
                     const RefCracks *cracks, RefSamplesWork *work, RefSamples *samples)
 {
+    const RefBasis bases[] = {basis, REF_MLS_PLANE_LINEAR, REF_MLS_PLANE_CONSTANT};
     double at[2][ALONG], low[2], high[2], edge = ref_quadtree_edge(tree, tree->cell + cell);
-    long end = 0, room[2] = {0};
-    RefCellFound found;
-    RefShape *shape = &work->shape;
     *samples = create(REF_SAMPLES_PER_CELL);
     place(tree, cell, samples);
     ref_samples_grid(tree, cell, at);
@@ -286,24 +348,9 @@ void ref_samples_of(const RefQuadtree *tree, long cell, const RefNodes *nodes, R
     }
     ref_cracks_look(cracks, low, high);
     int count = gather((const double(*)[ALONG])at, nodes, edge, cracks, work);
-    ref_cell_functions.shape((int)basis, count, edge, work->node, &found);
-    for (int p = 0; p < REF_SAMPLES_PER_CELL; p++) {
-        bool defined = found.pivot[p] > REF_LEAST_PIVOT && found.most[0][p] * edge <= MOST_SLOPE &&
-                       found.most[1][p] * edge * edge <= MOST_SECOND;
-        if (!defined) ref_samples_shape(nodes, basis, edge, samples->theta[p], shape);
-        int most = defined ? count : shape->count;
-        sm_make_room(samples->node, room[0], end + most);
-        sm_make_room(samples->part, room[1], end + most);
-        for (int n = 0; n < most; n++) {
-            const RefCellNode *of = work->node + n;
-            if (defined && !(of->weight[0][p] > 0)) continue;
-            samples->node[end] = defined ? work->member[n] : shape->node[n];
-            for (int k = 0; defined && k < 6; k++) samples->part[end][k] = of->part[k][p];
-            if (!defined) ref_samples_part(shape, n, samples->part[end]);
-            end++;
-        }
-        samples->start[p + 1] = end;
-    }
+    Pending pending = lay_out(nodes, basis, edge, count, work, samples);
+    for (int n = basis == bases[1]; n < 3 && pending.count; n++)
+        take_basis(bases[n], n == 2, edge, count, work, &pending, samples);
 }
 
 SmCode ref_samples_take(const RefQuadtree *tree, RefNodes *nodes, RefBasis basis,
