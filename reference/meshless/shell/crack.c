@@ -486,12 +486,12 @@ static bool cross_grid(const RefCracks *cracks, const RefCrackPiece *piece, cons
 }
 
 /* What is left of a part that a piece takes from. */
-static void take_from(const RefCrackPiece *piece, const double x[2], const double from[2],
-                      double width, double part[6])
+static void take_from(const RefCrackPiece *piece, double ahead, const double x[2],
+                      const double from[2], double width, double part[6])
 {
     double f[6];
     if (part[0] == 0) return;
-    if (piece->ahead < width && pass_piece(piece, piece->ahead, x, from, width, f))
+    if (ahead < width && pass_piece(piece, ahead, x, from, width, f))
         ref_mls_multiply(f, part);
     else
         memset(part, 0, 6 * sizeof *part);
@@ -534,8 +534,8 @@ static bool in_the_way(Fan *fan, const RefCrackPiece *piece)
            cross_grid(fan->cracks, piece, fan->grid, fan->from, fan->crossing);
 }
 
-bool ref_cracks_fan(const RefCracks *cracks, const RefGrid *grid, const double from[2],
-                    double reach, double (*part)[6])
+bool ref_cracks_fan(const RefCracks *cracks, bool earlier, const RefGrid *grid,
+                    const double from[2], double reach, double (*part)[6])
 {
     Fan fan = fan_of(cracks, grid, from);
     int count, places = grid->count[0] * grid->count[1];
@@ -543,13 +543,14 @@ bool ref_cracks_fan(const RefCracks *cracks, const RefGrid *grid, const double f
     among(cracks, fan.low, fan.high, &count);
     const RefCrackPiece *piece;
     for (long n = 0; (piece = next_piece(&fan, &cracks->near, &n));) {
-        if (!in_the_way(&fan, piece)) continue;
+        double ahead = earlier ? piece->before : piece->ahead;
+        if ((earlier && piece->born == cracks->now) || !in_the_way(&fan, piece)) continue;
         for (int p = 0; !any && p < places; p++) memcpy(part[p], whole, sizeof whole);
         any = true;
         for (int p = 0; p < places; p++) {
             double x[2];
             place_of(grid, p, x);
-            if (fan.crossing[p]) take_from(piece, x, from, TIP_REACH * reach, part[p]);
+            if (fan.crossing[p]) take_from(piece, ahead, x, from, TIP_REACH * reach, part[p]);
         }
     }
     return any;

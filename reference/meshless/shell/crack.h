@@ -104,11 +104,11 @@ bool ref_cracks_part(const RefCracks *cracks, const double x[2], const double fr
  * doing so; whether there are any. */
 bool ref_cracks_look(const RefCracks *cracks, const double low[2], const double high[2]);
 
-/* What gets from `from` to the places of a grid, as ref_cracks_pass() has it, with zeros where
- * nothing does: part[grid->count[0] j + i]. False, and nothing written, where no crack is in the
- * way. */
-bool ref_cracks_fan(const RefCracks *cracks, const RefGrid *grid, const double from[2],
-                    double reach, double (*part)[6]);
+/* What gets from `from` to the places of a grid, as ref_cracks_pass() has it, or
+ * ref_cracks_passed(), `earlier`, with zeros where nothing does: part[grid->count[0] j + i]. False,
+ * and nothing written, where no crack is in the way. */
+bool ref_cracks_fan(const RefCracks *cracks, bool earlier, const RefGrid *grid,
+                    const double from[2], double reach, double (*part)[6]);
 
 /* Looks up the pieces, and images of some, that have changes which are not settled and whose boxes
  * touch a box about a place of a rectangle; whether there are any. O(pieces). */

@@ -97,7 +97,7 @@ static void take_samples(const RefCracked *cracked, long c, RefSamplesWork *take
                          RefSamples *samples)
 {
     const RefShell *shell = cracked->shell;
-    ref_samples_of(&shell->tree, c, &shell->nodes, shell->basis, &cracked->cracks, take, samples);
+    ref_samples_of(&shell->tree, c, edge_of(cracked, c), take, samples);
     for (long p = 0; p < samples->count; p++) {
         double x[3], area;
         whole_at(cracked, samples->theta[p], whole, x, &area);
@@ -220,7 +220,7 @@ bool ref_cracked_again(const RefCracked *cracked, long cell)
 void ref_cracked_remake(RefCracked *cracked)
 {
     RefShell *shell = cracked->shell;
-    RefSamplesWork take = ref_samples_work(&shell->nodes);
+    RefSamplesWork take = ref_samples_work(&shell->nodes, shell->basis, &cracked->cracks, false);
     RefShape whole = ref_shape_create(&cracked->whole);
     RefThinWork work = ref_thin_work(shell->nodes.count);
     unsigned char *touched = sm_alloc((size_t)shell->nodes.count, 1);
@@ -490,7 +490,7 @@ static void remake_stale(RefCracked *cracked, const unsigned char *is_fresh, uns
 {
     RefShell *shell = cracked->shell;
     Fresh fresh = list_fresh(&shell->nodes, is_fresh);
-    RefSamplesWork take = ref_samples_work(&shell->nodes);
+    RefSamplesWork take = ref_samples_work(&shell->nodes, shell->basis, &cracked->cracks, false);
     RefShape whole = ref_shape_create(&cracked->whole);
     RefThinWork work = ref_thin_work(shell->nodes.count);
     before->cells = shell->tree.count;
@@ -512,8 +512,7 @@ static void remake_stale(RefCracked *cracked, const unsigned char *is_fresh, uns
             continue;
         }
         if (was) {
-            ref_samples_of(&shell->tree, c, &shell->nodes, shell->basis, &cracked->cracks, &take,
-                           &cell->samples);
+            ref_samples_of(&shell->tree, c, edge_of(cracked, c), &take, &cell->samples);
             memcpy(cell->samples.area, old->area, REF_SAMPLES_PER_CELL * sizeof *old->area);
             memcpy(cell->samples.trace, old->trace, REF_SAMPLES_PER_CELL * sizeof *old->trace);
         } else

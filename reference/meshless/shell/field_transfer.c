@@ -142,31 +142,59 @@ static Seen adjusted(const Seen *seen, const Balance *balance)
     return changed;
 }
 
+/* Whether a cell is new: part of one that was split. */
+static bool is_new(const RefCracked *cracked, const RefFieldsBefore *before, long c)
+{
+    return cracked->cell[c].again && cracked->cell[c].made && before->samples[c].count == 0;
+}
+
 /* What samples of new cells have of the old fields, cell by cell, and the sums over cells that were
  * split. */
 static Seen *see_parts(const RefCracked *cracked, RefFieldsBefore *before, Balance *balance)
 {
+    const RefShell *shell = cracked->shell;
     long parts = 0, cells = before->cells;
     for (long c = 0; c < cells; c++)
-        parts += cracked->cell[c].again && before->samples[c].count == 0
-                     ? cracked->cell[c].samples.count
-                     : 0;
+        if (is_new(cracked, before, c)) parts += REF_SAMPLES_PER_CELL;
     Seen *part = sm_alloc((size_t)parts, sizeof *part), *next = part;
+    RefSamplesWork work = ref_samples_work(&before->nodes, shell->basis, &cracked->cracks, true);
     for (long c = 0; c < cells; c++) {
         const RefCrackedCell *cell = cracked->cell + c;
         const RefSamples *old = before->samples + c;
+        RefSamples had = {.count = 0};
         for (long p = 0; !cell->made && p < old->count; p++) {
             RefFieldPlace place = ref_field_sample(old, p, (const double(*)[3])before->X);
             Seen seen = seen_before(cracked, place, old, p, before);
             add_seen(&seen, old->area[p], &balance[c].was);
         }
-        for (long p = 0; cell->again && old->count == 0 && p < cell->samples.count; p++) {
-            RefFieldPlace place = place_before(cracked, cell->from, cell->samples.theta[p], before);
+        if (!is_new(cracked, before, c)) continue;
+        double edge = ref_quadtree_edge(&shell->tree, shell->tree.cell + cell->from);
+        ref_samples_of(&shell->tree, c, edge, &work, &had);
+        for (long p = 0; p < had.count; p++) {
+            RefFieldPlace place = ref_field_sample(&had, p, (const double(*)[3])before->X);
             *next = seen_before(cracked, place, &cell->samples, p, before);
             add_seen(next++, cell->samples.area[p], &balance[cell->from].is);
         }
+        ref_samples_free(&had);
     }
+    ref_samples_work_free(&work);
     return part;
+}
+
+/* Whether a sample has the functions that it had, of a surface that is what it was. */
+static bool is_as_before(const RefCracked *cracked, const RefFieldsBefore *before,
+                         const RefSamples *old, const RefSamples *now, long p)
+{
+    long from = old->start[p], at = now->start[p], count = old->start[p + 1] - from;
+    if (now->start[p + 1] - at != count) return false;
+    for (long e = 0; e < count; e++) { /* numbers of nodes that are gone may be those of new ones */
+        int node = now->node[at + e];
+        if (old->node[from + e] != node ||
+            memcmp(old->part[from + e], now->part[at + e], sizeof *now->part) ||
+            memcmp(before->X[node], cracked->shell->X[node], sizeof *before->X))
+            return false;
+    }
+    return true;
 }
 
 /* What is left of the fields at a sample. */
@@ -199,6 +227,7 @@ void ref_fields_residuals(const RefCracked *cracked, RefFieldsBefore *before,
         const RefSamples *old = before->samples + c;
         for (long p = 0; cell->again && p < cell->samples.count; p++) {
             Seen seen;
+            if (old->count && is_as_before(cracked, before, old, &cell->samples, p)) continue;
             if (old->count) {
                 RefFieldPlace place = ref_field_sample(old, p, (const double(*)[3])before->X);
                 seen = seen_before(cracked, place, old, p, before);

@@ -154,9 +154,14 @@ static RefSamples create(long points)
                         .start = sm_alloc(count + 1, sizeof(long))};
 }
 
-RefSamplesWork ref_samples_work(const RefNodes *nodes)
+RefSamplesWork ref_samples_work(const RefNodes *nodes, RefBasis basis, const RefCracks *cracks,
+                                bool earlier)
 {
-    return (RefSamplesWork){.shape = ref_shape_create(nodes)};
+    return (RefSamplesWork){.nodes = nodes,
+                            .basis = basis,
+                            .cracks = cracks,
+                            .earlier = earlier,
+                            .shape = ref_shape_create(nodes)};
 }
 
 void ref_samples_work_free(RefSamplesWork *work)
@@ -212,9 +217,9 @@ static void pass_zeros(const RefNodes *nodes, long n, const RefGrid *grid, doubl
 }
 
 /* The weights of one node at a cell's samples; false: none. */
-static bool weigh(const double at[2][ALONG], const RefNodes *nodes, long n, const RefCracks *cracks,
-                  RefCellNode *of)
+static bool weigh(const double at[2][ALONG], const RefSamplesWork *work, long n, RefCellNode *of)
 {
+    const RefNodes *nodes = work->nodes;
     int first[2];
     RefGrid grid;
     double spline[2][3][ALONG] = {{{0}}}, part[REF_SAMPLES_PER_CELL][6];
@@ -232,14 +237,14 @@ static bool weigh(const double at[2][ALONG], const RefNodes *nodes, long n, cons
         pass_zeros(nodes, n, &grid, part);
         if (!take_parts(&grid, first, (const double(*)[6])part, of)) return false;
     }
-    return !ref_cracks_fan(cracks, &grid, node, reach, part) ||
+    return !ref_cracks_fan(work->cracks, work->earlier, &grid, node, reach, part) ||
            take_parts(&grid, first, (const double(*)[6])part, of);
 }
 
 /* All nodes that a cell's samples see, rising; returns how many. */
-static int gather(const double at[2][ALONG], const RefNodes *nodes, double scale,
-                  const RefCracks *cracks, RefSamplesWork *work)
+static int gather(const double at[2][ALONG], double scale, RefSamplesWork *work)
 {
+    const RefNodes *nodes = work->nodes;
     int count = 0, home = 0;
     double low[2], high[2];
     for (int d = 0; d < 2; d++) {
@@ -260,7 +265,7 @@ static int gather(const double at[2][ALONG], const RefNodes *nodes, double scale
             work->room = more;
         }
         RefCellNode *of = work->node + count;
-        if (!weigh(at, nodes, n, cracks, of)) continue;
+        if (!weigh(at, work, n, of)) continue;
         for (int l = 0; l < REF_SAMPLES_PER_CELL; l++) {
             of->way[0][l] = (node[0] - at[0][l % ALONG]) / scale;
             of->way[1][l] = (node[1] - at[1][l / ALONG]) / scale;
@@ -278,8 +283,7 @@ typedef struct {
 
 /* Room for what the samples see, and all pending that see a node. Others are looked at from beside
  * where they are. */
-static Pending lay_out(const RefNodes *nodes, RefBasis basis, double edge, int count,
-                       RefSamplesWork *work, RefSamples *samples)
+static Pending lay_out(double edge, int count, RefSamplesWork *work, RefSamples *samples)
 {
     int seen[REF_SAMPLES_PER_CELL] = {0};
     RefShape *shape = &work->shape;
@@ -289,7 +293,8 @@ static Pending lay_out(const RefNodes *nodes, RefBasis basis, double edge, int c
     for (int pass = 0; pass < 2; pass++) {
         for (int p = 0; p < REF_SAMPLES_PER_CELL; p++) {
             if (pass == 0 && seen[p]) pending.count += pending.is[p] = true;
-            if (!pending.is[p]) ref_samples_shape(nodes, basis, edge, samples->theta[p], shape);
+            if (!pending.is[p])
+                ref_samples_shape(work->nodes, work->basis, edge, samples->theta[p], shape);
             long at = samples->start[p];
             samples->start[p + 1] = at + (pending.is[p] ? seen[p] : shape->count);
             for (int n = 0; pass == 1 && !pending.is[p] && n < shape->count; n++) {
@@ -334,22 +339,22 @@ static void take_basis(RefBasis basis, bool last, double edge, int count, RefSam
         }
 }
 
-void ref_samples_of(const RefQuadtree *tree, long cell, const RefNodes *nodes, RefBasis basis,
-                    const RefCracks *cracks, RefSamplesWork *work, RefSamples *samples)
+void ref_samples_of(const RefQuadtree *tree, long cell, double edge, RefSamplesWork *work,
+                    RefSamples *samples)
 {
-    const RefBasis bases[] = {basis, REF_MLS_PLANE_LINEAR, REF_MLS_PLANE_CONSTANT};
-    double at[2][ALONG], low[2], high[2], edge = ref_quadtree_edge(tree, tree->cell + cell);
+    const RefBasis bases[] = {work->basis, REF_MLS_PLANE_LINEAR, REF_MLS_PLANE_CONSTANT};
+    double at[2][ALONG], low[2], high[2], margin = work->cracks->margin;
     *samples = create(REF_SAMPLES_PER_CELL);
     place(tree, cell, samples);
     ref_samples_grid(tree, cell, at);
     for (int d = 0; d < 2; d++) {
-        low[d] = at[d][0] - cracks->margin;
-        high[d] = at[d][ALONG - 1] + cracks->margin;
+        low[d] = at[d][0] - margin;
+        high[d] = at[d][ALONG - 1] + margin;
     }
-    ref_cracks_look(cracks, low, high);
-    int count = gather((const double(*)[ALONG])at, nodes, edge, cracks, work);
-    Pending pending = lay_out(nodes, basis, edge, count, work, samples);
-    for (int n = basis == bases[1]; n < 3 && pending.count; n++)
+    ref_cracks_look(work->cracks, low, high);
+    int count = gather((const double(*)[ALONG])at, edge, work);
+    Pending pending = lay_out(edge, count, work, samples);
+    for (int n = work->basis == bases[1]; n < 3 && pending.count; n++)
         take_basis(bases[n], n == 2, edge, count, work, &pending, samples);
 }
 

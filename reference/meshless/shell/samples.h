@@ -23,15 +23,21 @@ typedef struct {
     double (*part)[6]; /* [start[count]] phi, phi,1, phi,2, phi,11, phi,22, phi,12 */
 } RefSamples;
 
-/* What ref_samples_of() works in. */
+/* What ref_samples_of() takes samples of, and works in. */
 typedef struct {
+    const RefNodes *nodes;
+    RefBasis basis;
+    const RefCracks *cracks; /* which cut covers, */
+    bool earlier;            /* as before the changes that are not settled */
     RefShape shape;
-    RefCellNode *node; /* [room] */
-    int *member;       /* [room] their numbers */
-    long room;
+    RefCellNode *node; /* [room] those that touch a cell, and */
+    int *member;       /* their numbers, of images their owners' */
+    int room;
 } RefSamplesWork;
 
-RefSamplesWork ref_samples_work(const RefNodes *nodes);
+/* All are the caller's, and the nodes' `cut` says the same of the cracks. The caller frees. */
+RefSamplesWork ref_samples_work(const RefNodes *nodes, RefBasis basis, const RefCracks *cracks,
+                                bool earlier);
 void ref_samples_work_free(RefSamplesWork *work);
 
 /* Takes the shape functions after covers were enlarged where they are not defined at a sample. The
@@ -40,11 +46,11 @@ SmCode ref_samples_take(const RefQuadtree *tree, RefNodes *nodes, RefBasis basis
                         RefSamples *samples, SmError *error);
 void ref_samples_free(RefSamples *samples);
 
-/* The same of one terminal cell, with covers as they are, which these cracks cut. Where they leave
- * a sample too few nodes it has functions of a lower basis, and where they leave it no node, none.
- * `work` is the caller's, of ref_samples_work(). The caller frees. */
-void ref_samples_of(const RefQuadtree *tree, long cell, const RefNodes *nodes, RefBasis basis,
-                    const RefCracks *cracks, RefSamplesWork *work, RefSamples *samples);
+/* The same of one terminal cell, with covers as they are, which cracks cut. Where they leave a
+ * sample too few nodes, or functions that vary faster than a cell of this edge can bear, it has
+ * those of a lower basis, and where they leave it no node, none. The caller frees. */
+void ref_samples_of(const RefQuadtree *tree, long cell, double edge, RefSamplesWork *work,
+                    RefSamples *samples);
 
 /* The samples' coordinates along both axes of a cell. */
 void ref_samples_grid(const RefQuadtree *tree, long cell, double at[2][REF_GRID_SIDE]);

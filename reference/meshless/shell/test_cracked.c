@@ -486,8 +486,10 @@ TEST(ways_to_a_grid_are_ways_to_its_places)
         double step = half_cell(&sheet), reach = 5 * step;
         for (int n = 0; n < GRIDS; n++) {
             double at[2][REF_GRID_SIDE], from[3] = {0}, part[REF_GRID_SIDE * REF_GRID_SIDE][6];
+            double old[REF_GRID_SIDE * REF_GRID_SIDE][6];
             RefGrid grid = random_grid(&sheet, step, at, from);
-            bool some = ref_cracks_fan(cracks, &grid, from, reach, part), differs = false;
+            bool some = ref_cracks_fan(cracks, false, &grid, from, reach, part), differs = false;
+            bool had = ref_cracks_fan(cracks, true, &grid, from, reach, old);
             double low[2], high[2];
             for (int d = 0; d < 2; d++) {
                 low[d] = grid.at[d][0] - 12 * step;
@@ -500,10 +502,12 @@ TEST(ways_to_a_grid_are_ways_to_its_places)
                 double now[6] = {0}, before[6] = {0};
                 bool seen = ref_cracks_pass(cracks, x, from, reach, now);
                 bool was = ref_cracks_passed(cracks, x, from, reach, before);
-                const double whole[6] = {1}, *got = some ? part[p] : whole;
+                const double whole[6] = {1}, *got = some ? part[p] : whole,
+                             *got_before = had ? old[p] : whole;
                 if (!seen) memset(now, 0, sizeof now);
                 if (!was) memset(before, 0, sizeof before);
-                for (int m = 0; m < 6; m++) assert_true(got[m] == now[m]);
+                for (int m = 0; m < 6; m++)
+                    assert_true(got[m] == now[m] && got_before[m] == before[m]);
                 for (int m = 0; m < 6; m++) differs |= now[m] != before[m];
                 cut[now[0] == 0 ? 0 : now[0] < 1 ? 1 : 2]++;
             }
