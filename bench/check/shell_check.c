@@ -236,7 +236,7 @@ static void check_growth(const RefSheet *sheet, BenchElasticFound *found)
 {
     RefSteps steps;
     size_t size = 3 * (size_t)sheet->warp.nodes;
-    if (ref_steps_create(&sheet->shell.matrices, &sheet->steps.damping, sheet->steps.h, NULL,
+    if (ref_steps_create(&sheet->shell.matrices, &sheet->steps.damping, sheet->steps.h, NULL, NULL,
                          &steps, NULL)) {
         bench_elastic_note(found, BENCH_ELASTIC_GROWTH, NAN);
         return;

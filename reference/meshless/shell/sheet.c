@@ -69,7 +69,7 @@ SmCode ref_sheet_create(const RefChart *chart, const RefSheetOptions *options, R
     SmCode code = ref_shell_build(chart, &options->shell, &sheet->shell, error);
     if (code == SM_OK) code = ref_warp_create(&sheet->shell, &sheet->warp, error);
     if (code == SM_OK)
-        code = ref_steps_create(&sheet->shell.matrices, &options->damping, options->h, NULL,
+        code = ref_steps_create(&sheet->shell.matrices, &options->damping, options->h, NULL, NULL,
                                 &sheet->steps, error);
     if (code != SM_OK) {
         ref_sheet_free(sheet);
@@ -316,7 +316,7 @@ static SmCode change_steps(const RefSheet *sheet, const RefRows *rows, RefSteps 
                            SmError *error)
 {
     SmCode code = ref_steps_create(&sheet->shell.matrices, &sheet->options.damping,
-                                   sheet->options.h, rows, steps, error);
+                                   sheet->options.h, rows, NULL, steps, error);
     if (code != SM_OK) return code;
     size_t size = 3 * (size_t)sheet->shell.nodes.count * sizeof(double);
     memcpy(steps->u, sheet->steps.u, size);
@@ -361,7 +361,7 @@ SmCode ref_sheet_renew(RefSheet *sheet, double *u, double *v, const double *move
     SmCode code = ref_warp_create(&sheet->shell, &warp, error);
     if (code != SM_OK) return code;
     code = ref_steps_create(&sheet->shell.matrices, &sheet->options.damping, sheet->options.h, NULL,
-                            &steps, error);
+                            warp.solver, &steps, error);
     if (code == SM_OK) code = ref_project_fields(&steps, &warp, residual, u, v, error);
     if (code != SM_OK) {
         ref_steps_free(&steps);

@@ -23,7 +23,7 @@ double ref_steps_mass_share(const RefDamping *damping, double h)
 }
 
 SmCode ref_steps_create(const RefMatrices *matrices, const RefDamping *damping, double h,
-                        const RefRows *rows, RefSteps *steps, SmError *error)
+                        const RefRows *rows, const RefSolver *like, RefSteps *steps, SmError *error)
 {
     double a = damping->mass_damping, b = damping->stiffness_damping;
     *steps = (RefSteps){.matrices = matrices, .damping = *damping, .h = h};
@@ -31,8 +31,10 @@ SmCode ref_steps_create(const RefMatrices *matrices, const RefDamping *damping, 
         return sm_fail(error, SM_USAGE, "a step of %g s; give one above 0", h);
     if (!(a >= 0 && b >= 0))
         return sm_fail(error, SM_USAGE, "dampings of %g 1/s and %g s; give none below 0", a, b);
-    SmCode code =
-        ref_solver_create(matrices, -ref_steps_mass_share(damping, h), rows, &steps->solver, error);
+    double share = -ref_steps_mass_share(damping, h);
+    SmCode code = like && !rows
+                      ? ref_solver_create_like(like, matrices, share, &steps->solver, error)
+                      : ref_solver_create(matrices, share, rows, &steps->solver, error);
     if (code != SM_OK) return code;
     double **vector[] = {&steps->u, &steps->v, &steps->force, &steps->right, &steps->other};
     for (int n = 0; n < 5; n++)

@@ -19,10 +19,11 @@ typedef struct {
 } RefSteps;
 
 /* At rest. Factorises M + h C + h^2 K once for all steps, under `rows` (NULL: none), which are
- * copied. The caller frees. Errors: SM_USAGE, a step that is not above 0 or a negative damping;
- * solver.h's. */
+ * copied; without rows in the order of `like` (NULL: its own; see solver.h). The caller frees.
+ * Errors: SM_USAGE, a step that is not above 0 or a negative damping; solver.h's. */
 SmCode ref_steps_create(const RefMatrices *matrices, const RefDamping *damping, double h,
-                        const RefRows *rows, RefSteps *steps, SmError *error);
+                        const RefRows *rows, const RefSolver *like, RefSteps *steps,
+                        SmError *error);
 void ref_steps_free(RefSteps *steps);
 
 /* m of the matrix K + m M that steps are solved with. */

@@ -24,7 +24,7 @@ static RefSteps steps_of(const RefShell *shell, double a, double b, double h, co
     RefSteps steps;
     SmError error = {0};
     RefDamping damping = {a, b};
-    if (ref_steps_create(&shell->matrices, &damping, h, rows, &steps, &error) != SM_OK)
+    if (ref_steps_create(&shell->matrices, &damping, h, rows, NULL, &steps, &error) != SM_OK)
         fail_msg("%s", error.text);
     return steps;
 }
@@ -137,8 +137,8 @@ TEST(steps_and_dampings_that_are_refused)
     RefDamping damping = {0, 0}, negative = {0, -1};
     RefSteps steps;
     SmError error = {0};
-    assert_int_equal(ref_steps_create(&none, &damping, 0, NULL, &steps, &error), SM_USAGE);
+    assert_int_equal(ref_steps_create(&none, &damping, 0, NULL, NULL, &steps, &error), SM_USAGE);
     assert_non_null(strstr(error.text, "above 0"));
-    assert_int_equal(ref_steps_create(&none, &negative, 1, NULL, &steps, &error), SM_USAGE);
+    assert_int_equal(ref_steps_create(&none, &negative, 1, NULL, NULL, &steps, &error), SM_USAGE);
     assert_non_null(strstr(error.text, "none below 0"));
 }

@@ -163,6 +163,16 @@ static cholmod_factor *analyse(const RefSolver *like, cholmod_sparse *matrix, Re
     return cholmod_analyze(matrix, common);
 }
 
+/* The places that another solver gives its nodes. */
+static int *places_of(const RefSolver *like)
+{
+    size_t size = (size_t)like->size;
+    if (like->place) return sm_copy(like->place, size / 3, sizeof *like->place);
+    int *place = sm_alloc(size, sizeof *place);
+    for (size_t n = 0; n < size; n++) place[((int *)like->symbolic->Perm)[n]] = (int)n;
+    return place;
+}
+
 /* The matrix as it is factorised, and the places of its nodes, if they have any. */
 static cholmod_sparse *arrange(const RefSolver *like, const RefMatrices *matrices, double shift,
                                RefSolver *solver)
@@ -172,9 +182,7 @@ static cholmod_sparse *arrange(const RefSolver *like, const RefMatrices *matrice
         cholmod_sparse *matrix = shifted(matrices, shift, common);
         return matrix && solver->rows ? held(matrix, matrices, &solver->A, common) : matrix;
     }
-    size_t nodes = (size_t)matrices->mass.columns;
-    solver->place = like && like->place ? sm_copy(like->place, nodes, sizeof *solver->place)
-                                        : ref_node_order(&matrices->mass, common);
+    solver->place = like ? places_of(like) : ref_node_order(&matrices->mass, common);
     return solver->place ? ref_node_ordered(matrices, shift, solver->place, common) : NULL;
 }
 
@@ -226,7 +234,8 @@ SmCode ref_solver_create(const RefMatrices *matrices, double shift, const RefRow
 SmCode ref_solver_create_like(const RefSolver *like, const RefMatrices *matrices, double shift,
                               RefSolver **solver, SmError *error)
 {
-    assert(like->size == matrices->stiffness.columns && !like->rows);
+    int size = matrices->stiffness.columns;
+    assert((like->size == size || 3 * like->size == size) && !like->rows);
     return create(like, matrices, shift, NULL, solver, error);
 }
 
