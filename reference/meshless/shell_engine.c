@@ -201,11 +201,10 @@ static void blow(SmEngine *engine)
         ref_quadtree_cell(&sheet->shell.tree, cell, middle, edge);
         for (int p = 0; p < REF_WARP_PLACES; p++) {
             const RefWarpPlace *place = warp->place + REF_WARP_PLACES * leaf + p;
-            const RefChart *chart = &sheet->shell.chart;
             double theta[3];
             ref_warp_place_at(middle, edge, p, theta);
-            double L = chart->factor(chart->data, theta),
-                   area = edge[0] * edge[1] / REF_WARP_PLACES * L * L;
+            double area =
+                edge[0] * edge[1] / REF_WARP_PLACES * ref_shell_area(&sheet->shell, theta);
             ref_shell_shape(&sheet->shell, theta, shape);
             for (int n = 0; n < shape->count; n++)
                 for (int d = 0; d < 3; d++)

@@ -81,8 +81,7 @@ static void add_slopes(const RefShape *shape, int place, int *number, long *room
 /* Whether functions leave the surface its area at a place: between cracks they may not. */
 static bool bears(const RefShell *shell, const double theta[3], const RefFrame *frame)
 {
-    const RefShellFunctions *kept = &shell->functions;
-    return !kept->at || frame->area > LEAST_AREA * kept->area(kept->samples, theta);
+    return !shell->functions.at || frame->area > LEAST_AREA * ref_shell_area(shell, theta);
 }
 
 static void make_cells(const RefShell *shell, RefWarp *warp)
