@@ -241,6 +241,18 @@ static bool weigh(const double at[2][ALONG], const RefSamplesWork *work, long n,
            take_parts(&grid, first, (const double(*)[6])part, of);
 }
 
+static void set_ways(const double at[2][ALONG], const double node[2], double scale, RefCellNode *of)
+{
+    double way[2][ALONG];
+    for (int d = 0; d < 2; d++)
+        for (int i = 0; i < ALONG; i++) way[d][i] = (node[d] - at[d][i]) / scale;
+    for (int j = 0; j < ALONG; j++)
+        for (int i = 0; i < ALONG; i++) {
+            of->way[0][ALONG * j + i] = way[0][i];
+            of->way[1][ALONG * j + i] = way[1][j];
+        }
+}
+
 /* All nodes that a cell's samples see, rising; returns how many. */
 static int gather(const double at[2][ALONG], double scale, RefSamplesWork *work)
 {
@@ -266,10 +278,7 @@ static int gather(const double at[2][ALONG], double scale, RefSamplesWork *work)
         }
         RefCellNode *of = work->node + count;
         if (!weigh(at, work, n, of)) continue;
-        for (int l = 0; l < REF_SAMPLES_PER_CELL; l++) {
-            of->way[0][l] = (node[0] - at[0][l % ALONG]) / scale;
-            of->way[1][l] = (node[1] - at[1][l / ALONG]) / scale;
-        }
+        set_ways(at, node, scale, of);
         work->member[count++] = nodes->owner ? nodes->owner[n] : (int)n;
     }
     return count;
