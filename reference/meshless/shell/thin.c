@@ -83,27 +83,27 @@ static void find_roots(const RefFrame *frame, const double weight[2], double poi
     }
 }
 
-/* Writes a sample's rows; false where they are none of the stiffness. A node that is there twice
- * has both its functions in its columns. */
-static bool write_sample(const double (*X)[3], const RefSamples *samples, long p, double t,
-                         const RefMaterial *material, int nodes, int sample, RefThinWork *work)
+/* Writes a sample's row of the mass, and behind those of others its rows of the stiffness, if it
+ * has any. A node that is there twice has both its functions in its columns. */
+static void write_sample(const double (*X)[3], const RefSamples *samples, long p, double t,
+                         const RefMaterial *material, int nodes, double *shape, RefThinWork *work)
 {
-    long from = samples->start[p];
-    int count = (int)(samples->start[p + 1] - from), columns = ref_frame_columns(3 * nodes);
+    long from = samples->start[p], columns = ref_frame_columns(3 * nodes);
+    int count = (int)(samples->start[p + 1] - from);
+    double *strain = work->strain + 6 * work->stiff * columns;
     const int *node = samples->node + from;
     const double(*part)[6] = (const double(*)[6])(samples->part + from);
     RefFrame frame = ref_middle_at(X, count, node, part);
     double weight[2], root[6][6][3], area = samples->area[p], times = sqrt(area * t);
     ref_thin_weights(area, t, material, weight);
     bool stiff = ref_thin_is_stiff(&frame, area / samples->weight[p], samples->trace[p]);
-    for (int e = 0; e < count; e++)
-        work->shape[sample * ref_frame_columns(nodes) + work->number[node[e]]] +=
-            times * part[e][0];
-    if (!stiff) return false;
+    for (int e = 0; e < count; e++) shape[work->number[node[e]]] += times * part[e][0];
+    if (!stiff) return;
     find_roots(&frame, weight, material->poisson, root);
-    ref_frame_sums.root(count, node, work->number, part, (const double(*)[6][3])root, columns,
-                        work->strain + 6 * sample * columns);
-    return true;
+    memset(strain, 0, 6 * (size_t)columns * sizeof *strain);
+    ref_frame_sums.root(count, node, work->number, part, (const double(*)[6][3])root, (int)columns,
+                        strain);
+    work->stiff++;
 }
 
 RefThinWork ref_thin_work(long nodes)
@@ -135,7 +135,7 @@ static void square_rows(const RefThinWork *work, RefElement *element)
     for (int a = 0; a < count; a++)
         for (int b = a; b < count; b++) (*sum++)[0] = work->square[(long)a * columns + b];
     columns = ref_frame_columns(3 * count);
-    ref_frame_sums.square(6 * REF_SAMPLES_PER_CELL, columns, work->strain, work->square);
+    ref_frame_sums.square(6 * work->stiff, columns, work->strain, work->square);
     sum = element->sum;
     for (int a = 0; a < count; a++)
         for (int b = a; b < count; b++, sum++)
@@ -160,7 +160,7 @@ static void make_rows(long columns, RefThinWork *work)
 int ref_thin_element(const double (*X)[3], const RefSamples *samples, long cell, double thickness,
                      const RefMaterial *material, RefThinWork *work, RefElement *element)
 {
-    int soft = 0, count = ref_samples_nodes(samples, cell, work->node, work->number);
+    int count = ref_samples_nodes(samples, cell, work->node, work->number);
     long wide = ref_frame_columns(3 * count), narrow = ref_frame_columns(count);
     if (count > element->room || !element->node) {
         element->room = count;
@@ -171,14 +171,14 @@ int ref_thin_element(const double (*X)[3], const RefSamples *samples, long cell,
     element->count = count;
     memcpy(element->node, work->node, (size_t)count * sizeof *work->node);
     make_rows(wide, work);
-    memset(work->strain, 0, (size_t)(6 * REF_SAMPLES_PER_CELL * wide) * sizeof(double));
+    work->stiff = 0;
     memset(work->shape, 0, (size_t)(REF_SAMPLES_PER_CELL * narrow) * sizeof(double));
     for (int n = 0; n < REF_SAMPLES_PER_CELL; n++)
-        soft += !write_sample(X, samples, cell * REF_SAMPLES_PER_CELL + n, thickness, material,
-                              count, n, work);
+        write_sample(X, samples, cell * REF_SAMPLES_PER_CELL + n, thickness, material, count,
+                     work->shape + n * narrow, work);
     square_rows(work, element);
     for (int n = 0; n < count; n++) work->number[element->node[n]] = -1;
-    return soft;
+    return REF_SAMPLES_PER_CELL - work->stiff;
 }
 
 static void add_element(const RefElement *element, RefPairs *pairs)

@@ -29,7 +29,8 @@ static inline const double *ref_element_sum(const RefElement *element, long a, l
 /* What ref_thin_element() works in; the caller frees. */
 typedef struct {
     int *node, *number; /* [nodes] */
-    double *strain;     /* [6 samples][columns] roots of the stiffness: weighted strains' rows */
+    int stiff;          /* samples that have rows of the stiffness, */
+    double *strain;     /* [6 samples][columns] its roots: weighted strains */
     double *shape;      /* [samples][columns] and of the mass */
     double *square;     /* [columns][columns] */
     long columns;       /* that there is room for */
