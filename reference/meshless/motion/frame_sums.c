@@ -97,24 +97,38 @@ static void place(const RefSkin *skin, const RefSkinBlock *block, const double (
     }
 }
 
-static void weigh(const RefSkinShare *share, const int *column, float *row)
-{
-    enum { AT_ONCE = REF_SKIN_SHARED };
-    for (int first = 0; first < share->points; first += AT_ONCE)
-        for (int n = 0; n < share->nodes; n++) {
-            const double *part = share->part[n];
-            float *to = row + column[n] + first;
-            for (int p = 0; p < AT_ONCE; p++) {
-                double sum = 0;
-                for (int m = 0; m < 6; m++) sum += share->times[m][first + p] * part[m];
-                to[p] += (float)sum;
-            }
-        }
-}
-
 /* Slopes side by side, anywhere where doubles may be. */
 typedef double Slopes
     __attribute__((vector_size(REF_FRAME_SLOPES * sizeof(double)), aligned(sizeof(double))));
+
+/* Points that are weighed at once. */
+typedef double Points
+    __attribute__((vector_size(REF_SKIN_SHARED * sizeof(double)), aligned(sizeof(double))));
+typedef long long PointBits __attribute__((vector_size(REF_SKIN_SHARED * sizeof(double))));
+typedef float PointFloats
+    __attribute__((vector_size(REF_SKIN_SHARED * sizeof(float)), aligned(sizeof(float))));
+
+static void weigh(const RefSkinShare *share, const double (*times)[REF_SKIN_ROOM],
+                  const int *number, float *row)
+{
+    const int end = share->first + share->points;
+    for (int first = share->first; first < end; first += REF_SKIN_SHARED) {
+        const PointBits in = (PointBits){0, 1, 2, 3, 4, 5, 6, 7} < end - first - (PointBits){0};
+        Points here[6]; /* what follows the last point gets nothing */
+        for (int m = 0; m < 6; m++)
+            here[m] = (Points)((PointBits) * (const Points *)(times[m] + first) & in);
+        for (int n = 0; n < share->nodes; n++) {
+            const double *part = share->part[n];
+            float *to = row + number[share->node[n]] * REF_SKIN_BLOCK + first;
+            Points even = here[0] * part[0], odd = here[1] * part[1];
+            for (int m = 2; m < 6; m += 2) {
+                even += here[m] * part[m];
+                odd += here[m + 1] * part[m + 1];
+            }
+            *(PointFloats *)to += __builtin_convertvector(even + odd, PointFloats);
+        }
+    }
+}
 
 static void parts(int count, const int *node, const double (*part)[6],
                   const double (*field)[REF_FRAME_SLOPES], double sum[6][REF_FRAME_SLOPES])
