@@ -130,15 +130,21 @@ static void weigh(const RefSkinShare *share, const double (*times)[REF_SKIN_ROOM
     }
 }
 
+/* Of so many fields at once sums stay in registers: wider vectors than the processor's do not. */
+enum { FIELDS = SM_VECTOR_BYTES / sizeof(double) };
+typedef double Fields __attribute__((vector_size(SM_VECTOR_BYTES), aligned(sizeof(double))));
+
 static void parts(int count, const int *node, const double (*part)[6],
                   const double (*field)[REF_FRAME_SLOPES], double sum[6][REF_FRAME_SLOPES])
 {
-    Slopes at[6] = {{0}};
-    for (int n = 0; n < count; n++) {
-        const Slopes *here = (const Slopes *)field[node[n]];
-        for (int m = 0; m < 6; m++) at[m] += *here * part[n][m];
+    for (int first = 0; first < REF_FRAME_SLOPES; first += FIELDS) {
+        Fields at[6] = {{0}};
+        for (int n = 0; n < count; n++) {
+            const Fields here = *(const Fields *)(field[node[n]] + first);
+            for (int m = 0; m < 6; m++) at[m] += here * part[n][m];
+        }
+        for (int m = 0; m < 6; m++) *(Fields *)(sum[m] + first) = at[m];
     }
-    for (int m = 0; m < 6; m++) *(Slopes *)sum[m] = at[m];
 }
 
 static void slopes(int count, const int *node, const double (*slope)[REF_FRAME_SLOPES],
