@@ -29,7 +29,7 @@ foreach(noun scene/scene scene/scene_settings scene/body scene/memory scene/near
 endforeach()
 
 sources_of(shell_sources reference/meshless/map/*.c reference/meshless/shell/*.c)
-list(FILTER shell_sources EXCLUDE REGEX "/cell_functions\\.c$") # in frame_objects
+list(FILTER shell_sources EXCLUDE REGEX "/(cell_functions|foot_search)\\.c$") # in frame_objects
 list(APPEND view_sources ${shell_sources})
 foreach(noun engine elastic_absent shell_engine stored body/body body/covers body/cylinders body/gauss_rule
     body/matrices body/mls body/nodes body/octants body/pairs motion/grip motion/motion motion/rotation motion/skin

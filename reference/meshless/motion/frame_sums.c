@@ -97,20 +97,10 @@ static void place(const RefSkin *skin, const RefSkinBlock *block, const double (
     }
 }
 
-static void weigh(const RefSkinShare *share, const int *column, float *row)
-{
-    enum { AT_ONCE = REF_SKIN_SHARED };
-    for (int first = 0; first < share->points; first += AT_ONCE)
-        for (int n = 0; n < share->nodes; n++) {
-            const double *part = share->part[n];
-            float *to = row + column[n] + first;
-            for (int p = 0; p < AT_ONCE; p++) {
-                double sum = 0;
-                for (int m = 0; m < 6; m++) sum += share->times[m][first + p] * part[m];
-                to[p] += (float)sum;
-            }
-        }
-}
+/* As many doubles as sums of stay in registers, anywhere where doubles may be: the compiler takes
+ * wider vectors than the processor's through memory. */
+enum { WIDE = SM_VECTOR_BYTES / sizeof(double) };
+typedef double Wide __attribute__((vector_size(SM_VECTOR_BYTES), aligned(sizeof(double))));
 
 /* Parts side by side, four and two, and one parameter's entries of six rows. */
 typedef double Four __attribute__((vector_size(4 * sizeof(double)), aligned(sizeof(double))));
@@ -155,56 +145,86 @@ static void root(int count, const int *node, const int *place, const double (*pa
     }
 }
 
-/* Slopes side by side, anywhere where doubles may be. */
-typedef double Slopes
-    __attribute__((vector_size(REF_FRAME_SLOPES * sizeof(double)), aligned(sizeof(double))));
+/* Points that are weighed at once. */
+typedef double Points
+    __attribute__((vector_size(REF_SKIN_SHARED * sizeof(double)), aligned(sizeof(double))));
+typedef long long PointBits __attribute__((vector_size(REF_SKIN_SHARED * sizeof(double))));
+typedef float PointFloats
+    __attribute__((vector_size(REF_SKIN_SHARED * sizeof(float)), aligned(sizeof(float))));
+
+static void weigh(const RefSkinShare *share, const double (*times)[REF_SKIN_ROOM],
+                  const int *number, float *row)
+{
+    const int end = share->first + share->points;
+    for (int first = share->first; first < end; first += REF_SKIN_SHARED) {
+        const PointBits in = (PointBits){0, 1, 2, 3, 4, 5, 6, 7} < end - first - (PointBits){0};
+        Points here[6]; /* what follows the last point gets nothing */
+        for (int m = 0; m < 6; m++)
+            here[m] = (Points)((PointBits) * (const Points *)(times[m] + first) & in);
+        for (int n = 0; n < share->nodes; n++) {
+            const double *part = share->part[n];
+            float *to = row + number[share->node[n]] * REF_SKIN_BLOCK + first;
+            Points even = here[0] * part[0], odd = here[1] * part[1];
+            for (int m = 2; m < 6; m += 2) {
+                even += here[m] * part[m];
+                odd += here[m + 1] * part[m + 1];
+            }
+            *(PointFloats *)to += __builtin_convertvector(even + odd, PointFloats);
+        }
+    }
+}
 
 static void parts(int count, const int *node, const double (*part)[6],
                   const double (*field)[REF_FRAME_SLOPES], double sum[6][REF_FRAME_SLOPES])
 {
-    Slopes at[6] = {{0}};
-    for (int n = 0; n < count; n++) {
-        const Slopes *here = (const Slopes *)field[node[n]];
-        for (int m = 0; m < 6; m++) at[m] += *here * part[n][m];
+    for (int first = 0; first < REF_FRAME_SLOPES; first += WIDE) {
+        Wide at[6] = {{0}};
+        for (int n = 0; n < count; n++) {
+            const Wide here = *(const Wide *)(field[node[n]] + first);
+            for (int m = 0; m < 6; m++) at[m] += here * part[n][m];
+        }
+        for (int m = 0; m < 6; m++) *(Wide *)(sum[m] + first) = at[m];
     }
-    for (int m = 0; m < 6; m++) *(Slopes *)sum[m] = at[m];
 }
 
 static void slopes(int count, const int *node, const double (*slope)[REF_FRAME_SLOPES],
                    const double (*u)[3], double sum[3][REF_FRAME_SLOPES])
 {
-    Slopes x = {0}, y = {0}, z = {0};
-    for (int n = 0; n < count; n++) {
-        const Slopes *here = (const Slopes *)slope[n];
-        const double *at = u[node[n]];
-        x += *here * at[0];
-        y += *here * at[1];
-        z += *here * at[2];
+    for (int first = 0; first < REF_FRAME_SLOPES; first += WIDE) {
+        Wide x = {0}, y = {0}, z = {0};
+        for (int n = 0; n < count; n++) {
+            const Wide here = *(const Wide *)(slope[n] + first);
+            const double *at = u[node[n]];
+            x += here * at[0];
+            y += here * at[1];
+            z += here * at[2];
+        }
+        *(Wide *)(sum[0] + first) = x;
+        *(Wide *)(sum[1] + first) = y;
+        *(Wide *)(sum[2] + first) = z;
     }
-    *(Slopes *)sum[0] = x;
-    *(Slopes *)sum[1] = y;
-    *(Slopes *)sum[2] = z;
 }
 
 static void spread(int count, const int *node, const double (*slope)[REF_FRAME_SLOPES],
                    const double gain[REF_FRAME_SLOPES][REF_FRAME_SLOPES],
                    double (*to)[REF_FRAME_SLOPES])
 {
-    Slopes from[REF_FRAME_SLOPES];
-    memcpy(from, gain, sizeof from);
-    for (int n = 0; n < count; n++) {
-        Slopes *at = (Slopes *)to[node[n]], even = *at, odd = {0};
-        for (int j = 0; j < REF_FRAME_SLOPES; j += 2) {
-            even += from[j] * slope[n][j];
-            odd += from[j + 1] * slope[n][j + 1];
+    for (int first = 0; first < REF_FRAME_SLOPES; first += WIDE) {
+        Wide from[REF_FRAME_SLOPES];
+        for (int j = 0; j < REF_FRAME_SLOPES; j++) from[j] = *(const Wide *)(gain[j] + first);
+        for (int n = 0; n < count; n++) {
+            Wide *at = (Wide *)(to[node[n]] + first), even = *at, odd = {0};
+            for (int j = 0; j < REF_FRAME_SLOPES; j += 2) {
+                even += from[j] * slope[n][j];
+                odd += from[j + 1] * slope[n][j + 1];
+            }
+            *at = even + odd;
         }
-        *at = even + odd;
     }
 }
 
 /* Sums that stay in registers: some rows of them, two vectors wide. */
-enum { HIGH = SM_VECTOR_BYTES < 64 ? 4 : 8, WIDE = SM_VECTOR_BYTES / sizeof(double) };
-typedef double Wide __attribute__((vector_size(SM_VECTOR_BYTES), aligned(sizeof(double))));
+enum { HIGH = SM_VECTOR_BYTES < 64 ? 4 : 8 };
 
 static void square_block(int rows, int columns, const double *left, const double *right,
                          double *sum)

@@ -19,9 +19,10 @@ typedef struct {
     void (*place)(const RefSkin *skin, const RefSkinBlock *block, const double (*moved)[3],
                   const double (*turned)[3], double (*position)[3]);
 
-    /* Adds the weights that points share to rows that begin at column[n] of `row`, a whole number
-     * of REF_SKIN_SHARED of them: times are zero of points that are none. */
-    void (*weigh)(const RefSkinShare *share, const int *column, float *row);
+    /* Adds the weights that points share to rows of REF_SKIN_BLOCK, of node n the row number[n];
+     * there is room for one more. */
+    void (*weigh)(const RefSkinShare *share, const double (*times)[REF_SKIN_ROOM],
+                  const int *number, float *row);
 
     /* sum[d][m] = sum over the functions of part[n][m] u[node[n]][d]. */
     void (*derive)(int count, const int *node, const double (*part)[6], const double (*u)[3],

@@ -18,8 +18,7 @@ typedef struct {
     int *list;   /* [BLOCK functions] the block's nodes, and */
     float *row;  /* [like list][BLOCK] their weights at its points */
     float lift[BLOCK];
-    RefSkinShare share;
-    int *column; /* [functions] of the nodes of a share */
+    RefSkinShares shares;
     long loose;
 } Builder;
 
@@ -30,8 +29,7 @@ static Builder builder_of(const RefSkinCarrier *carrier)
                        .shape = ref_shape_create(carrier->nodes),
                        .number = sm_alloc((size_t)carrier->nodes->count, sizeof(int)),
                        .list = sm_alloc(most, sizeof(int)),
-                       .row = sm_alloc(most + 1, BLOCK * sizeof(float)),
-                       .column = sm_alloc((size_t)carrier->nodes->most, sizeof(int))};
+                       .row = sm_alloc(most + 1, BLOCK * sizeof(float))};
     for (long n = 0; n < carrier->nodes->count; n++) builder.number[n] = -1;
     return builder;
 }
@@ -39,7 +37,7 @@ static Builder builder_of(const RefSkinCarrier *carrier)
 static void builder_free(Builder *builder)
 {
     ref_shape_free(&builder->shape);
-    sm_free_all(builder->number, builder->list, builder->row, builder->column);
+    sm_free_all(builder->number, builder->list, builder->row);
 }
 
 typedef struct {
@@ -65,16 +63,17 @@ static Keyed *sort_points(const RefSkinCarrier *carrier, long count)
     return key;
 }
 
-/* The number of a node in the block's list, to which it is added. */
-static int column_of(Builder *builder, RefSkinBlock *block, int node)
+/* Adds nodes to the block's list that are not in it. */
+static void list_nodes(Builder *builder, RefSkinBlock *block, int count, const int *node)
 {
-    int *number = builder->number + node;
-    if (*number < 0) {
-        *number = block->nodes++;
-        builder->list[*number] = node;
-        memset(builder->row + *number * BLOCK, 0, BLOCK * sizeof *builder->row);
+    const int before = block->nodes;
+    for (int n = 0; n < count; n++) {
+        if (builder->number[node[n]] >= 0) continue;
+        builder->number[node[n]] = block->nodes;
+        builder->list[block->nodes++] = node[n];
     }
-    return *number;
+    memset(builder->row + (size_t)before * BLOCK, 0,
+           (size_t)(block->nodes - before) * BLOCK * sizeof *builder->row);
 }
 
 /* The weights at point p of a block, or the nearest node alone. */
@@ -90,26 +89,19 @@ static void evaluate(Builder *builder, RefSkinBlock *block, int p, long point)
         builder->shape.value[0] = 1;
     }
     builder->lift[p] = (float)lift;
+    list_nodes(builder, block, shape->count, shape->node);
     for (int n = 0; n < shape->count; n++)
-        builder->row[column_of(builder, block, shape->node[n]) * BLOCK + p] +=
-            (float)shape->value[n];
+        builder->row[builder->number[shape->node[n]] * BLOCK + p] += (float)shape->value[n];
 }
 
-/* The weights of the points from p on that share parts; returns how many these are. */
-static int evaluate_shared(Builder *builder, RefSkinBlock *block, int p, const long *point)
+/* The weights of points that share parts. */
+static void evaluate_share(Builder *builder, RefSkinBlock *block, const RefSkinShare *share)
 {
-    const RefSkinCarrier *carrier = builder->carrier;
-    RefSkinShare *share = &builder->share;
-    share->points = 0;
-    if (carrier->share) carrier->share(carrier->data, block->points - p, point, share);
-    if (share->points == 0) return 0;
-    for (int m = 0; m < 6; m++) /* whole vectors: what follows gets nothing */
-        for (int k = share->points; k % REF_SKIN_SHARED; k++) share->times[m][k] = 0;
-    for (int n = 0; n < share->nodes; n++)
-        builder->column[n] = column_of(builder, block, share->node[n]) * BLOCK;
-    ref_frame_sums.weigh(share, builder->column, builder->row + p);
-    for (int k = 0; k < share->points; k++) builder->lift[p + k] = (float)share->lift[k];
-    return share->points;
+    list_nodes(builder, block, share->nodes, share->node);
+    ref_frame_sums.weigh(share, (const double(*)[REF_SKIN_ROOM])builder->shares.times,
+                         builder->number, builder->row);
+    for (int p = share->first; p < share->first + share->points; p++)
+        builder->lift[p] = (float)builder->shares.lift[p];
 }
 
 /* Behind all others, with some room for more: a block that changes is likely to change again. */
@@ -126,10 +118,11 @@ static void make_slots(RefSkin *skin, RefSkinBlock *block)
 
 static void fill_weights(Builder *builder, RefSkin *skin, RefSkinBlock *block)
 {
+    const int nodes = block->nodes, room = block->room;
     float *weight = skin->weight + block->weight;
-    memcpy(skin->node + block->node, builder->list, (size_t)block->nodes * sizeof *skin->node);
-    for (int first = 0; first < block->room; first += LANES)
-        for (int n = 0; n < block->nodes; n++, weight += LANES)
+    memcpy(skin->node + block->node, builder->list, (size_t)nodes * sizeof *skin->node);
+    for (int first = 0; first < room; first += LANES)
+        for (int n = 0; n < nodes; n++, weight += LANES)
             memcpy(weight, builder->row + n * BLOCK + first, LANES * sizeof *weight);
     if (skin->lift)
         memcpy(skin->lift + block->first, builder->lift, (size_t)block->points * sizeof(float));
@@ -138,14 +131,24 @@ static void fill_weights(Builder *builder, RefSkin *skin, RefSkinBlock *block)
 
 static void weigh_block(Builder *builder, RefSkin *skin, RefSkinBlock *block)
 {
+    const RefSkinCarrier *carrier = builder->carrier;
+    const long *point = skin->order + block->first;
+    RefSkinShares *shares = &builder->shares;
     long before = builder->loose -= block->loose;
-    block->nodes = 0;
-    for (int p = 0, shared; p < block->points; p += shared) {
-        const long *point = skin->order + block->first + p;
-        shared = evaluate_shared(builder, block, p, point);
-        if (shared) continue;
-        evaluate(builder, block, p, *point);
-        shared = 1;
+    block->nodes = shares->count = 0;
+    if (carrier->share)
+        carrier->share(carrier->data, block->points, point,
+                       (const double(*)[3])(skin->rest + block->first), shares);
+    for (int p = 0, s = 0; p < block->points;) {
+        const RefSkinShare *share = shares->share + s;
+        if (s < shares->count && share->first == p) {
+            evaluate_share(builder, block, share);
+            p += share->points;
+            s++;
+        } else {
+            evaluate(builder, block, p, point[p]);
+            p++;
+        }
     }
     block->loose = (int)(builder->loose - before);
     if (block->nodes > block->slots) make_slots(skin, block);

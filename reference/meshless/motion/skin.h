@@ -9,9 +9,10 @@
 #include "../body/body.h"
 
 enum {
-    REF_SKIN_LANES = 16, /* points that are placed at once */
-    REF_SKIN_BLOCK = 64, /* points of a block at most */
-    REF_SKIN_SHARED = 8  /* points that are weighed at once */
+    REF_SKIN_LANES = 16,                             /* points that are placed at once */
+    REF_SKIN_BLOCK = 64,                             /* points of a block at most */
+    REF_SKIN_SHARED = 8,                             /* points that are weighed at once */
+    REF_SKIN_ROOM = REF_SKIN_BLOCK + REF_SKIN_SHARED /* where whole vectors may begin anywhere */
 };
 
 typedef struct {
@@ -38,12 +39,18 @@ typedef struct {
 /* Weights of points one after the other which are sums of the same parts: at point p, node n has
  * the sum over m of times[m][p] part[n][m]. */
 typedef struct {
-    int points, nodes;
+    int first, points, nodes;
     const int *node;
     const double (*part)[6];
-    double times[6][REF_SKIN_BLOCK];
-    double lift[REF_SKIN_BLOCK];
 } RefSkinShare;
+
+/* Those of a block, rising; points may be in none. */
+typedef struct {
+    int count;
+    RefSkinShare share[REF_SKIN_BLOCK];
+    double times[6][REF_SKIN_ROOM];
+    double lift[REF_SKIN_ROOM];
+} RefSkinShares;
 
 /* What carries points: their cells, and the weights of the nodes that move each of them; false
  * where there are too few. */
@@ -56,8 +63,10 @@ typedef struct {
     /* May be NULL, as may be the next: where in its cell a point is, by which points are sorted
      * that share parts. */
     int (*place)(const void *data, long point);
-    /* The weights of the first points of some; of none, if they are none of shared parts. */
-    void (*share)(const void *data, int count, const long *point, RefSkinShare *share);
+    /* The weights of those of a block's points, which are at x, that share parts; others are
+     * weighed alone. */
+    void (*share)(const void *data, int count, const long *point, const double (*x)[3],
+                  RefSkinShares *shares);
 } RefSkinCarrier;
 
 /* `lifted`: points of a shell. */

@@ -94,35 +94,38 @@ TEST(points_are_placed)
     }
 }
 
-/* Of any number of points, from any row on; nothing is added to other points'. */
+/* Of any number of points, from any of the block on; nothing is added to other points'. */
 TEST(shared_weights_are_sums_of_parts)
 {
-    enum { NODES = 9, ROOM = REF_SKIN_BLOCK };
+    enum { NODES = 9, BLOCK = REF_SKIN_BLOCK };
     unsigned seed = 4;
     for (int trial = 0; trial < TRIALS; trial++) {
-        static double part[NODES][6];
-        static float row[NODES + 1][ROOM];
-        static RefSkinShare share;
-        int column[NODES], first = random_int(&seed, ROOM);
-        share = (RefSkinShare){.points = 1 + random_int(&seed, ROOM - first),
-                               .nodes = 1 + random_int(&seed, NODES),
-                               .part = (const double(*)[6])part};
+        static double part[NODES][6], times[6][REF_SKIN_ROOM];
+        static float row[NODES + 1][BLOCK];
+        int node[NODES], number[NODES], first = random_int(&seed, BLOCK);
+        RefSkinShare share = {.first = first,
+                              .points = 1 + random_int(&seed, BLOCK - first),
+                              .nodes = 1 + random_int(&seed, NODES),
+                              .node = node,
+                              .part = (const double(*)[6])part};
         for (int m = 0; m < 6; m++) {
-            for (int p = 0; p < share.points; p++) share.times[m][p] = random_between(&seed, -1, 1);
+            for (int p = 0; p < BLOCK; p++) times[m][p] = random_between(&seed, -1, 1);
             for (int n = 0; n < NODES; n++) part[n][m] = random_between(&seed, -1, 1);
         }
         for (int n = 0; n <= NODES; n++)
-            for (int p = 0; p < ROOM; p++) row[n][p] = 1;
-        for (int n = 0; n < share.nodes; n++) column[n] = (n + trial) % share.nodes * ROOM;
-        ref_frame_sums.weigh(&share, column, row[0] + first);
+            for (int p = 0; p < BLOCK; p++) row[n][p] = 1;
+        for (int n = 0; n < NODES; n++) {
+            node[n] = NODES - 1 - n;
+            number[node[n]] = (n + trial) % NODES;
+        }
+        ref_frame_sums.weigh(&share, (const double(*)[REF_SKIN_ROOM])times, number, row[0]);
         for (int n = 0; n <= NODES; n++)
-            for (int p = 0; p < ROOM; p++) {
+            for (int p = 0; p < BLOCK; p++) {
                 double wanted = 1;
-                bool in = n < share.nodes && p >= first && p < first + share.points;
-                for (int m = 0; in && m < 6; m++)
-                    for (int of = 0; of < share.nodes; of++)
-                        if (column[of] == n * ROOM)
-                            wanted += share.times[m][p - first] * part[of][m];
+                bool in = p >= first && p < first + share.points;
+                for (int of = 0; in && of < share.nodes; of++)
+                    for (int m = 0; m < 6 && number[node[of]] == n; m++)
+                        wanted += times[m][p] * part[of][m];
                 assert_true(fabs(row[n][p] - wanted) < (in ? 1e-6 : 0) + 1e-300);
             }
     }

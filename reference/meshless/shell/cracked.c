@@ -154,7 +154,7 @@ int ref_cracked_sample(const RefCracked *cracked, long c, const double theta[2])
     if (!ref_cracks_part(&cracked->cracks, theta, there)) return nearest;
     for (int n = 0; n < REF_SAMPLES_PER_CELL; n++) {
         const double *at = samples->theta[n];
-        double far = hypot(at[0] - theta[0], at[1] - theta[1]);
+        double x = at[0] - theta[0], y = at[1] - theta[1], far = x * x + y * y;
         if (far >= least || ref_cracks_part(&cracked->cracks, theta, at)) continue;
         least = far;
         best = n;

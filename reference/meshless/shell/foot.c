@@ -4,22 +4,30 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../../lib/isa.h"
 #include "../../../lib/vector.h"
+#include "foot_search.h"
 
-enum { MOST_STEPS = 12 };
+SM_ISA_TABLE(RefFootSearch, ref_foot_search)
 
 /* A node's place at rest and its normal, and nothing. */
 enum { FIELDS = REF_FRAME_SLOPES, PLACE = 0, NORMAL = 3 };
 
-/* What a sample of a cracked shell says of all that is nearest to it: the sums of places and of
- * normals with its functions' parts. */
+/* Of the plane of parameters. */
+typedef struct {
+    double low[2], high[2];
+} Box;
+
+/* A sample of a cracked shell that points see. */
 typedef struct {
     long cell; /* terminal; -1: none */
-    double low[2], edge[2];
-    bool whole; /* no crack touches it */
-    int sample; /* of the cell; -1: none */
-    bool tame;  /* ref_samples_expand() takes nothing back there */
-    double sum[6][FIELDS];
+    Box box;
+    double middle[2], edge[2];
+    bool whole;                /* no crack touches it */
+    const RefSamples *samples; /* its own */
+    int sample;                /* -1: none */
+    Box near, own;             /* of all to which it is nearest; to which surely none is as near */
+    bool open;                 /* no crack touches what is near the sample */
 } Sight;
 
 typedef struct {
@@ -29,8 +37,10 @@ typedef struct {
     const double (*x)[3];
     const RefCracked *cracked;
     const bool *leant;
-    Sight *sight;
     double (*field)[FIELDS]; /* [nodes] */
+    Sight *sight;
+    RefFootPoints *points; /* of a block, whose parameters are */
+    double (*at)[2];       /* [REF_SKIN_BLOCK] */
 } Feet;
 
 static long cell_of(const void *data, long point)
@@ -91,9 +101,7 @@ static double step(const double place[3][3], const double normal[3][3], const do
     return sqrt(sm_dot(off, off));
 }
 
-/* How far o leads out of the reach: of a cell's edges along the parameters, and of `height` up.
- * What was shortened to 1 is within, however that was rounded. */
-static const double WITHIN = 1 + 1e-9;
+/* How far o leads out of the reach: of a cell's edges along the parameters, and of `height` up. */
 static double beyond(const double o[3], const double edge[2], double height)
 {
     return fmax(fmax(fabs(o[0]) / edge[0], fabs(o[1]) / edge[1]), fabs(o[2]) / height);
@@ -109,14 +117,16 @@ static void find_foot(const double place[3][3], const double normal[3][3], const
     double far = beyond(first, edge, height);
     for (int k = 0; k < 3 && far > 1; k++) first[k] /= far;
     memcpy(o, first, sizeof first);
-    for (int n = 0; n < MOST_STEPS && off > 1e-7 * height && beyond(o, edge, height) <= WITHIN; n++)
+    for (int n = 0; n < REF_FOOT_MOST_STEPS && off > 1e-7 * height &&
+                    beyond(o, edge, height) <= REF_FOOT_WITHIN;
+         n++)
         off = step(place, normal, x, o); /* the last one squares it */
-    if (!(off < 1e-6 * height && beyond(o, edge, height) <= WITHIN)) memcpy(o, first, sizeof first);
+    if (!(off < 1e-6 * height && beyond(o, edge, height) <= REF_FOOT_WITHIN))
+        memcpy(o, first, sizeof first);
 }
 
-/* The offsets of x in a cell, from place and normal there; false where functions are constant. */
-static bool offsets(const double place[3][3], const double normal[3][3], const double x[3],
-                    const double edge[2], double o[3])
+bool ref_foot_offsets(const double place[3][3], const double normal[3][3], const double x[3],
+                      const double edge[2], double o[3])
 {
     double length = sqrt(sqrt(sm_dot(place[1], place[1]) * sm_dot(place[2], place[2])));
     if (length == 0) return false;
@@ -132,7 +142,8 @@ void ref_foot_of(const RefShell *shell, const RefWarp *warp, const double theta[
     *lift = 0;
     sum_parts(warp, shape, place, normal);
     ref_quadtree_cell(tree, tree->cell + ref_quadtree_at(tree, theta), middle, edge);
-    if (!offsets((const double(*)[3])place, (const double(*)[3])normal, x, edge, o)) return;
+    if (!ref_foot_offsets((const double(*)[3])place, (const double(*)[3])normal, x, edge, o))
+        return;
     *lift = o[2];
     for (int n = 0; n < shape->count; n++)
         shape->value[n] += o[0] * shape->gradient[n][0] + o[1] * shape->gradient[n][1];
@@ -154,116 +165,136 @@ static bool weigh(const void *data, long point, RefShape *shape, double *lift)
     return ref_foot_at(feet->shell, feet->warp, feet->theta[point], feet->x[point], shape, lift);
 }
 
-/* The terminal cell at a place: points go on in the same one mostly. */
-static void look_at(const RefCracked *cracked, const double theta[2], Sight *sight)
+static bool is_inside(const double theta[2], const Box *box)
+{
+    return theta[0] > box->low[0] && theta[0] < box->high[0] && theta[1] > box->low[1] &&
+           theta[1] < box->high[1];
+}
+
+/* The cell at a place: points go on in the same one mostly. */
+static void look_at_cell(const RefCracked *cracked, const double theta[2], Sight *sight)
 {
     const RefQuadtree *tree = &cracked->shell->tree;
-    bool inside = sight->cell >= 0;
-    for (int d = 0; d < 2; d++)
-        inside = inside && theta[d] > sight->low[d] && theta[d] < sight->low[d] + sight->edge[d];
-    long cell = inside ? sight->cell : ref_quadtree_at(tree, theta);
+    if (sight->cell >= 0 && is_inside(theta, &sight->box)) return;
+    const long cell = ref_quadtree_at(tree, theta);
     if (cell == sight->cell) return;
-    double middle[2], high[2];
     sight->cell = cell;
     sight->sample = -1;
-    ref_quadtree_cell(tree, tree->cell + cell, middle, sight->edge);
+    sight->samples = &cracked->cell[cell].samples;
+    ref_quadtree_cell(tree, tree->cell + cell, sight->middle, sight->edge);
     for (int d = 0; d < 2; d++) {
-        sight->low[d] = middle[d] - sight->edge[d] / 2;
-        high[d] = middle[d] + sight->edge[d] / 2;
+        sight->box.low[d] = sight->middle[d] - sight->edge[d] / 2;
+        sight->box.high[d] = sight->middle[d] + sight->edge[d] / 2;
     }
-    sight->whole = !ref_cracks_look(&cracked->cracks, sight->low, high);
+    sight->whole = !ref_cracks_look(&cracked->cracks, sight->box.low, sight->box.high);
 }
 
-/* A tenth of an edge, beyond which another sample is nearer. */
-static const double NEAR = 0.1;
+/* Shares of an edge: from a sample, beyond the first along an axis another one is nearer, and
+ * within the second along both, in the same quarter of the cell, none is. */
+static const double NEAR = 0.1, NEAREST = 0.096;
 
-/* Taylor's series from a sample, of functions or of their sums, are of 1, x, y, x^2 / 2, y^2 / 2
- * and x y; along offsets o from there they go on by their slopes. */
-static void series(double x, double y, const double o[2], double times[6])
+/* The sample that is nearest to a place. */
+static void look_at(const RefCracked *cracked, const double theta[2], Sight *sight)
 {
-    times[0] = 1;
-    times[1] = x + o[0];
-    times[2] = y + o[1];
-    times[3] = x * (x / 2 + o[0]);
-    times[4] = y * (y / 2 + o[1]);
-    times[5] = x * y + o[0] * y + o[1] * x;
-}
-
-static void sum_sight(const Feet *feet, const RefSamples *samples, int s, Sight *sight)
-{
-    const double none[2] = {0};
-    const long start = samples->start[s], end = samples->start[s + 1];
-    double most[6];
+    look_at_cell(cracked, theta, sight);
+    const int s = ref_samples_nearest(sight->middle, sight->edge, theta);
+    if (s == sight->sample) return;
     sight->sample = s;
-    sight->tame = true;
-    series(NEAR * sight->edge[0], NEAR * sight->edge[1], none, most);
-    for (long e = start; e < end; e++) {
-        double value = 0;
-        for (int m = 0; m < 6; m++) value += fabs(samples->part[e][m]) * most[m];
-        sight->tame = sight->tame && value < REF_SAMPLES_MOST_VALUE;
+    for (int d = 0; d < 2; d++) {
+        const double from = sight->samples->theta[s][d], middle = sight->middle[d];
+        const double low = from - NEAREST * sight->edge[d], high = from + NEAREST * sight->edge[d];
+        const double begin = from > middle ? middle : sight->box.low[d];
+        const double end = from > middle ? sight->box.high[d] : middle;
+        sight->near.low[d] = from - NEAR * sight->edge[d];
+        sight->near.high[d] = from + NEAR * sight->edge[d];
+        sight->own.low[d] = low > begin ? low : begin;
+        sight->own.high[d] = high < end ? high : end;
     }
-    ref_frame_sums.parts((int)(end - start), samples->node + start,
-                         (const double(*)[6])(samples->part + start),
-                         (const double(*)[FIELDS])feet->field, sight->sum);
+    sight->open =
+        sight->whole || !ref_cracks_look(&cracked->cracks, sight->near.low, sight->near.high);
 }
 
-/* A field at x, y from the sample, and its slopes there. */
-static void expand(const double sum[6][FIELDS], int field, double x, double y, double at[3][3])
+static bool is_nearest(const double theta[2], const Sight *sight)
 {
-    const double none[2] = {0};
-    double times[6];
-    series(x, y, none, times);
-    for (int d = 0; d < 3; d++) {
-        int f = field + d;
-        at[0][d] = 0;
-        for (int m = 0; m < 6; m++) at[0][d] += times[m] * sum[m][f];
-        at[1][d] = sum[1][f] + x * sum[3][f] + y * sum[5][f];
-        at[2][d] = sum[2][f] + y * sum[4][f] + x * sum[5][f];
+    return is_inside(theta, &sight->own) ||
+           (is_inside(theta, &sight->box) &&
+            ref_samples_nearest(sight->middle, sight->edge, theta) == sight->sample);
+}
+
+/* Whether point p of the block has the functions of the sample, which is nearest. */
+static bool is_seen(const Feet *feet, int p, const Sight *sight)
+{
+    const double *theta = feet->at[p], *from = sight->samples->theta[sight->sample];
+    for (int d = 0; d < 2; d++) {
+        feet->points->from[d][p] = theta[d] - from[d];
+        feet->points->edge[d][p] = sight->edge[d];
     }
+    return sight->open || !ref_cracks_part(&feet->cracked->cracks, theta, from);
 }
 
-/* The sample whose functions are those of a place, or -1. */
-static int sample_at(const RefCracked *cracked, const double theta[2], Sight *sight)
+/* The points of a block from `first` on that see the same sample; returns where others begin. */
+static int take_share(const Feet *feet, int first, int count, RefSkinShares *shares)
 {
-    double middle[2];
-    look_at(cracked, theta, sight);
-    for (int d = 0; d < 2; d++) middle[d] = sight->low[d] + sight->edge[d] / 2;
-    return sight->whole ? ref_samples_nearest(middle, sight->edge, theta)
-                        : ref_cracked_sample(cracked, sight->cell, theta);
+    Sight *sight = feet->sight;
+    int end = first + 1;
+    look_at(feet->cracked, feet->at[first], sight);
+    if (!is_inside(feet->at[first], &sight->near) || !is_seen(feet, first, sight)) return end;
+    while (end < count && is_nearest(feet->at[end], sight) && is_seen(feet, end, sight)) end++;
+    const RefSamples *samples = sight->samples;
+    const long start = samples->start[sight->sample];
+    RefSkinShare share = {.first = first,
+                          .points = end - first,
+                          .nodes = (int)(samples->start[sight->sample + 1] - start),
+                          .node = samples->node + start,
+                          .part = (const double(*)[6])(samples->part + start)};
+    for (int n = 0; n < share.nodes; n++) __builtin_prefetch(share.part + n);
+    shares->share[shares->count++] = share;
+    return end;
 }
 
-/* What weigh() finds, of the first points that are nearest to the same sample of a shell that
- * cracks: from sums over its functions. */
-static void share(const void *data, int count, const long *point, RefSkinShare *share)
+/* Whether there are functions, of which ref_samples_expand() takes none back: Taylor's series are
+ * of 1, x, y, x^2 / 2, y^2 / 2 and x y. */
+static bool is_tame(const RefSkinShare *share, const double edge[2])
+{
+    const double x = NEAR * edge[0], y = NEAR * edge[1];
+    const double most[6] = {1, x, y, x * x / 2, y * y / 2, x * y};
+    double largest = 0;
+    for (int n = 0; n < share->nodes; n++) {
+        double value[2] = {0}; /* as a vector may be */
+        for (int m = 0; m < 6; m++) value[m % 2] += fabs(share->part[n][m]) * most[m];
+        largest = value[0] + value[1] > largest ? value[0] + value[1] : largest;
+    }
+    return largest > 0 && largest < REF_SAMPLES_MOST_VALUE;
+}
+
+/* What weigh() finds, of points that are nearest to the same sample of a shell that cracks: from
+ * sums over its functions. */
+static void share(const void *data, int count, const long *point, const double (*x)[3],
+                  RefSkinShares *shares)
 {
     const Feet *feet = data;
-    Sight *sight = feet->sight;
-    int first = sample_at(feet->cracked, feet->theta[*point], sight);
-    long cell = sight->cell;
-    const RefSamples *samples = &feet->cracked->cell[cell].samples;
-    share->points = 0;
-    if (first < 0 || samples->start[first] == samples->start[first + 1]) return;
-    if (sight->sample != first) sum_sight(feet, samples, first, sight);
-    if (!sight->tame) return;
-    share->nodes = (int)(samples->start[first + 1] - samples->start[first]);
-    share->node = samples->node + samples->start[first];
-    share->part = (const double(*)[6])(samples->part + samples->start[first]);
-    for (int p = 0; p < count; p++) {
-        const double *theta = feet->theta[point[p]];
-        double at[2][3][3], o[3] = {0}, times[6];
-        if (p > 0 && (sample_at(feet->cracked, theta, sight) != first || sight->cell != cell))
-            return;
-        double x = theta[0] - samples->theta[first][0], y = theta[1] - samples->theta[first][1];
-        if (!(fabs(x) < NEAR * sight->edge[0] && fabs(y) < NEAR * sight->edge[1])) return;
-        expand((const double(*)[FIELDS])sight->sum, PLACE, x, y, at[0]);
-        expand((const double(*)[FIELDS])sight->sum, NORMAL, x, y, at[1]);
-        offsets((const double(*)[3])at[0], (const double(*)[3])at[1], feet->x[point[p]],
-                sight->edge, o);
-        series(x, y, o, times);
-        for (int m = 0; m < 6; m++) share->times[m][p] = times[m];
-        share->lift[p] = o[2];
-        share->points++;
+    RefFootPoints *points = feet->points;
+    int tame = 0;
+    for (int p = 0; p < count; p++) __builtin_prefetch(feet->theta[point[p]]);
+    for (int p = 0; p < count; p++)
+        for (int d = 0; d < 3; d++) points->x[d][p] = x[p][d];
+    for (int p = 0; p < count; p++) memcpy(feet->at[p], feet->theta[point[p]], sizeof feet->at[p]);
+    shares->count = 0;
+    for (int p = 0; p < count;) p = take_share(feet, p, count, shares);
+    for (int s = 0; s < shares->count; s++) {
+        const RefSkinShare share = shares->share[s];
+        const double edge[2] = {points->edge[0][share.first], points->edge[1][share.first]};
+        double sum[6][FIELDS];
+        if (!is_tame(&share, edge)) continue;
+        ref_frame_sums.parts(share.nodes, share.node, share.part,
+                             (const double(*)[FIELDS])feet->field, sum);
+        ref_foot_search.expand((const double(*)[FIELDS])sum, share.first, share.points, points);
+        shares->share[tame++] = share;
     }
+    shares->count = tame;
+    ref_foot_search.find(count, points);
+    ref_foot_search.series(count, points, shares->times);
+    memcpy(shares->lift, points->offset[2], sizeof shares->lift);
 }
 
 /* The sample that is nearest. */
@@ -289,8 +320,9 @@ void ref_foot_renew(const RefCracked *cracked, const RefWarp *warp, const bool *
                     const double (*theta)[2], const double (*x)[3], RefSkin *skin, long *loose)
 {
     Sight sight = {.cell = -1};
-    double(*field)[FIELDS] = sm_alloc((size_t)warp->nodes, sizeof *field);
-    Feet feet = {cracked->shell, warp, theta, x, cracked, leant, &sight, field};
+    double at[REF_SKIN_BLOCK][2], (*field)[FIELDS] = sm_alloc((size_t)warp->nodes, sizeof *field);
+    RefFootPoints *points = sm_alloc(1, sizeof *points);
+    Feet feet = {cracked->shell, warp, theta, x, cracked, leant, field, &sight, points, at};
     for (long n = 0; n < warp->nodes; n++) {
         memcpy(field[n] + PLACE, warp->X[n], sizeof warp->X[n]);
         memcpy(field[n] + NORMAL, warp->rest_normal[n], sizeof warp->rest_normal[n]);
@@ -298,7 +330,7 @@ void ref_foot_renew(const RefCracked *cracked, const RefWarp *warp, const bool *
     RefSkinCarrier carrier = {&feet, &cracked->shell->nodes, cell_of, weigh, nearest, place_of,
                               share};
     ref_skin_renew(&carrier, is_stale, skin, loose);
-    free(field);
+    sm_free_all(field, points);
 }
 
 void ref_foot_skin(const RefShell *shell, const RefWarp *warp, long count, const double (*theta)[2],

@@ -22,6 +22,13 @@ void ref_foot_skin(const RefShell *shell, const RefWarp *warp, long count, const
 void ref_foot_renew(const RefCracked *cracked, const RefWarp *warp, const bool *leant,
                     const double (*theta)[2], const double (*x)[3], RefSkin *skin, long *loose);
 
+/* Offsets along the parameters and up the normal that lead to x from a place, given with its slopes
+ * and those of its normal; where Newton's steps find none within reach, those in the frame there,
+ * so much of them as is. The reach is a cell's edges, and twice as much up. False, and nothing,
+ * where slopes are zero. */
+bool ref_foot_offsets(const double place[3][3], const double normal[3][3], const double x[3],
+                      const double edge[2], double o[3]);
+
 /* Where the functions of the foot of x at rest were taken, which move it: their values are in
  * `shape`, and how far x is off along the normal in `lift`. False, and nothing, where functions are
  * not defined. */

@@ -11,6 +11,7 @@
 
 static const double MOST_SLOPE = 6, MOST_SECOND = 50;
 enum { ORDER = 3, PARTS = 2, ALONG = ORDER * PARTS };
+_Static_assert(PARTS == 2, "of two parts the second begins at 1");
 _Static_assert((int)ALONG == (int)REF_GRID_SIDE && (int)ALONG == (int)REF_CELL_SIDE, "one grid");
 
 void ref_samples_free(RefSamples *samples)
@@ -114,9 +115,9 @@ int ref_samples_nearest(const double middle[2], const double edge[2], const doub
     int which[2];
     for (int d = 0; d < 2; d++) {
         double place = PARTS * ((theta[d] - middle[d]) / edge[d] + 0.5);
-        int part = (int)fmin(fmax(floor(place), 0), PARTS - 1);
+        int part = place >= 1;
         double within = place - part;
-        which[d] = ORDER * part + (within < 0.306 ? 0 : within < 0.694 ? 1 : 2);
+        which[d] = ORDER * part + (within >= 0.306) + (within >= 0.694);
     }
     return which[1] * ALONG + which[0];
 }

@@ -135,7 +135,7 @@ static inline void update(Sheet *sheet, double m, double **u, double **v)
     SmError error = {0};
     ref_cracked_update(&sheet->cracked, &fields);
     if (ref_warp_create(&sheet->shell, &warp, &error) != SM_OK ||
-        ref_steps_create(&sheet->shell.matrices, &none, sqrt(1 / m), NULL, &steps, &error) !=
+        ref_steps_create(&sheet->shell.matrices, &none, sqrt(1 / m), NULL, NULL, &steps, &error) !=
             SM_OK ||
         ref_project_fields(&steps, &warp, residual, field[0], field[1], &error) != SM_OK)
         fail_msg("%s", error.text);
