@@ -188,8 +188,8 @@ static SmCode shell_create(const SmVoxels *voxels, const SmEngineParams *params,
     return SM_OK;
 }
 
-/* The pressure's push of one step: at a place of a cell along the normal there, over its area. */
-static void blow(SmEngine *engine)
+/* A pressure's push in places of a shell that does not break, along the normals there. */
+static void press_places(SmEngine *engine, double pressure)
 {
     RefSheet *sheet = &engine->body.sheet;
     const RefWarp *warp = &sheet->warp;
@@ -203,18 +203,27 @@ static void blow(SmEngine *engine)
             const RefWarpPlace *place = warp->place + REF_WARP_PLACES * leaf + p;
             double theta[3];
             ref_warp_place_at(middle, edge, p, theta);
-            double area =
-                edge[0] * edge[1] / REF_WARP_PLACES * ref_shell_area(&sheet->shell, theta);
+            double push = pressure * edge[0] * edge[1] / REF_WARP_PLACES *
+                          ref_shell_area(&sheet->shell, theta);
             ref_shell_shape(&sheet->shell, theta, shape);
             for (int n = 0; n < shape->count; n++)
                 for (int d = 0; d < 3; d++)
-                    sheet->impulse[shape->node[n]][d] += engine->pressure * sheet->options.h *
-                                                         area * shape->value[n] * place->normal[d] *
-                                                         engine->outwards;
+                    sheet->impulse[shape->node[n]][d] += push * shape->value[n] * place->normal[d];
         }
         leaf++;
     }
-    sheet->pushed = true;
+}
+
+/* The pressure's push of one step. */
+static void blow(SmEngine *engine)
+{
+    RefShellBody *body = &engine->body;
+    double pressure = engine->pressure * body->sheet.options.h * engine->outwards;
+    if (body->breaking)
+        ref_cracked_press(&body->breaking->cracked, pressure, body->sheet.impulse);
+    else
+        press_places(engine, pressure);
+    body->sheet.pushed = true;
 }
 
 static void bind(SmEngine *engine);

@@ -15,8 +15,8 @@ typedef struct {
 } RefShellOptions;
 
 /* Where functions are kept at samples (cracked.h): at() writes those at a place, and returns the
- * basis, or 0 where there are none; area() is what the surface had there, over that in the plane,
- * before any crack. */
+ * basis, or 0 where there are none; area() is what the surface had about there, over that in the
+ * plane, before any crack. */
 typedef struct {
     int (*at)(const void *samples, const double theta[3], RefShape *shape);
     double (*area)(const void *samples, const double theta[3]);
