@@ -23,7 +23,7 @@ static const char torn[] =
         "    centre = [0.0, 0.06, 0.0]; amplitude = 1.0; period = 0.6; } );\n"
         "h = 0.002; steps_per_frame = 4;\n"
         "meshless = { young = 1.0e6; nodes = 200; covers = 4.5; thickness = 0.005; strength = "
-        "7.0e4; };\n";
+        "5.0e4; };\n";
 
 static int opened(const char *text, int keep)
 {
