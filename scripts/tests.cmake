@@ -177,15 +177,16 @@ if(NOT SHAPEBENCH_SANITIZE AND NOT SHAPEBENCH_CORE)
 endif()
 
 # These start first, of any instruction set and precision, those that take longest before the others, so
-# that none is alone in the end: about the seconds of each.
+# that none is alone in the end: about the seconds of each, of which sanitizers make more of some.
 set(long_150 page)
 set(long_100 scenes)
-set(long_60 brute_force documents report render writers)
-set(long_20 bench_inside damage bench_regress package python_module python_wheel lib_shape meshless_point_maps)
+set(long_60 brute_force documents report render writers meshless_cracked meshless_multitorus bench_burst)
+set(long_20 bench_inside damage bench_regress package python_module python_wheel lib_shape meshless_point_maps
+  meshless_cracked_cylinders)
 set(long_10 bench_calibrate bench_kernels bench_sweep_run bench_points bench_gap bench_threads bench_command
   bench_experiment bench_comparison bench_stiffness bench_step_record bench_view bench_octree_states
   meshless_engine lib_shapebench fastlsm_engine)
-set(long_5 meshless_multitorus fastlsm_fastlsm fastlsm_fracture octree_octree lib_cut_surface install)
+set(long_5 fastlsm_fastlsm fastlsm_fracture octree_octree lib_cut_surface install)
 get_property(tests DIRECTORY PROPERTY TESTS)
 foreach(test ${tests})
   string(REGEX REPLACE "_f64$" "" noun ${test})

@@ -7,7 +7,8 @@
 
 #include "../vector.h"
 
-enum { RING = 64 }; /* most neighbours that a vertex may get */
+enum { RING = 64 };    /* most neighbours that a vertex may get */
+enum { CHILDREN = 4 }; /* of a place in the heap: in one or two lines of the cache */
 
 /* x' A x + 2 b' x + c with symmetric A (xx, xy, xz, yy, yz, zz). */
 typedef struct {
@@ -17,15 +18,15 @@ typedef struct {
 typedef struct {
     float cost;
     int u, v;
-    unsigned u_version, v_version;
+    unsigned versions; /* the sum of u's and v's: as long as both are there it only rises */
 } Candidate;
 
 /* Corners (3 * triangle + corner) of one vertex form a list: head[vertex], then next[corner]. */
 typedef struct {
     SmMesh *mesh;
     Quadric *quadric;
-    unsigned *version; /* of each vertex; rises when it moves, 0 is gone */
-    int *head, *next;
+    unsigned *version; /* of each vertex; rises when it moves */
+    int *head, *next;  /* -1: it is gone */
     Candidate *heap;
     long heap_count, heap_room;
 } Collapse;
@@ -90,8 +91,10 @@ static bool cheaper(const Candidate *a, const Candidate *b)
 static void heap_sink(Collapse *c, long i)
 {
     Candidate moved = c->heap[i];
-    for (long child; (child = 2 * i + 1) < c->heap_count; i = child) {
-        if (child + 1 < c->heap_count && cheaper(&c->heap[child + 1], &c->heap[child])) child++;
+    for (long child; (child = CHILDREN * i + 1) < c->heap_count; i = child) {
+        long end = child + CHILDREN < c->heap_count ? child + CHILDREN : c->heap_count;
+        for (long other = child + 1; other < end; other++)
+            if (cheaper(&c->heap[other], &c->heap[child])) child = other;
         if (!cheaper(&c->heap[child], &moved)) break;
         c->heap[i] = c->heap[child];
     }
@@ -101,8 +104,8 @@ static void heap_sink(Collapse *c, long i)
 static void heap_rise(Collapse *c, long i)
 {
     Candidate moved = c->heap[i];
-    for (; i > 0 && cheaper(&moved, &c->heap[(i - 1) / 2]); i = (i - 1) / 2)
-        c->heap[i] = c->heap[(i - 1) / 2];
+    for (long parent; i > 0 && cheaper(&moved, &c->heap[parent = (i - 1) / CHILDREN]); i = parent)
+        c->heap[i] = c->heap[parent];
     c->heap[i] = moved;
 }
 
@@ -130,7 +133,7 @@ static Candidate candidate(const Collapse *c, int u, int v)
 {
     double x[3];
     int a = u < v ? u : v, b = u < v ? v : u;
-    return (Candidate){(float)collapse_point(c, a, b, x), a, b, c->version[a], c->version[b]};
+    return (Candidate){(float)collapse_point(c, a, b, x), a, b, c->version[a] + c->version[b]};
 }
 
 static void heap_append(Collapse *c, Candidate added)
@@ -250,7 +253,27 @@ static void merge(Collapse *c, int u, int v, const double x[3])
     quadric_add(&c->quadric[u], &c->quadric[v]);
     memcpy(m->position[u], x, sizeof m->position[u]);
     c->version[u]++;
-    c->version[v] = 0;
+}
+
+static bool is_current(const Collapse *c, Candidate e)
+{
+    return c->head[e.u] >= 0 && c->head[e.v] >= 0 &&
+           c->version[e.u] + c->version[e.v] == e.versions;
+}
+
+static void heap_order(Collapse *c)
+{
+    for (long i = (c->heap_count + CHILDREN - 2) / CHILDREN; i-- > 0;) heap_sink(c, i);
+}
+
+/* Each costs a way through the whole heap when it comes to the top. */
+static void drop_outdated(Collapse *c)
+{
+    long kept = 0;
+    for (long i = 0; i < c->heap_count; i++)
+        if (is_current(c, c->heap[i])) c->heap[kept++] = c->heap[i];
+    c->heap_count = kept;
+    heap_order(c);
 }
 
 static void collapse_until(Collapse *c, long live, long wanted)
@@ -258,7 +281,7 @@ static void collapse_until(Collapse *c, long live, long wanted)
     while (live > wanted && c->heap_count) {
         Candidate e = heap_pop(c);
         double x[3];
-        if (c->version[e.u] != e.u_version || c->version[e.v] != e.v_version) continue;
+        if (!is_current(c, e)) continue;
         if (!linked_well(c, e.u, e.v) || !place_merged(c, e.u, e.v, x)) continue;
         merge(c, e.u, e.v, x);
         live -= 2;
@@ -267,13 +290,14 @@ static void collapse_until(Collapse *c, long live, long wanted)
             heap_append(c, candidate(c, e.u, ring[i]));
             heap_rise(c, c->heap_count - 1);
         }
+        if (c->heap_count > 2 * live) drop_outdated(c); /* edges are 1.5 times the triangles */
     }
 }
 
 static void prepare(Collapse *c)
 {
     SmMesh *m = c->mesh;
-    for (long v = 0; v < m->vertex_count; v++) c->head[v] = -1, c->version[v] = 1;
+    for (long v = 0; v < m->vertex_count; v++) c->head[v] = -1;
     for (long t = 0; t < m->triangle_count; t++) {
         const int *corner = m->triangle[t];
         double n[3];
@@ -293,7 +317,7 @@ static void prepare(Collapse *c)
             int u = m->triangle[t][k], v = m->triangle[t][(k + 1) % 3];
             if (u < v) heap_append(c, candidate(c, u, v));
         }
-    for (long i = c->heap_count / 2 - 1; i >= 0; i--) heap_sink(c, i);
+    heap_order(c);
 }
 
 /* Drops triangles and vertices that are gone; what stays keeps its order. */

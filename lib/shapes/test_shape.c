@@ -2,7 +2,6 @@
  * counted (fingers), and the same every time; the stages beneath them on solids with known sizes.
  */
 #include "../system/hash.h"
-#include "../test_fields.h"
 #include "../test_frame.h"
 #include "../voxel/voxelise.h"
 #include "decimate.h"
@@ -10,12 +9,31 @@
 #include "shape.h"
 #include "sine.h"
 
-static SmMesh make(const char *name)
+static SmMesh shape_mesh[16]; /* as sm_shapes() lists them; some take seconds */
+
+static int make_all(void **state)
 {
-    SmMesh mesh;
-    SmError error;
-    assert_int_equal(sm_shape_mesh(name, &mesh, &error), SM_OK);
-    return mesh;
+    (void)state;
+    int count;
+    const SmShape *shapes = sm_shapes(&count);
+    if (count != sizeof shape_mesh / sizeof *shape_mesh) return 1;
+    for (int s = 0; s < count; s++)
+        if (sm_shape_mesh(shapes[s].name, &shape_mesh[s], NULL) != SM_OK) return 1;
+    return 0;
+}
+
+static int free_all(void **state)
+{
+    (void)state;
+    for (size_t s = 0; s < sizeof shape_mesh / sizeof *shape_mesh; s++)
+        sm_mesh_free(&shape_mesh[s]);
+    return 0;
+}
+TEST_GROUP(make_all, free_all)
+
+static const SmMesh *mesh_of(const char *name)
+{
+    return &shape_mesh[sm_shape_find(name) - sm_shapes(&(int){0})];
 }
 
 static void assert_closed(const SmMesh *mesh)
@@ -47,7 +65,6 @@ TEST(test_the_papers_triangle_counts)
 
 TEST(test_sizes)
 {
-    needs_figures();
     static const struct {
         const char *name;
         int axis;
@@ -58,18 +75,14 @@ TEST(test_sizes)
                   {"beam", 2, 0.1},    {"balljoint", 1, 0.2}, {"rabbit", 1, 0.3},
                   {"santa", 1, 0.3}};
     for (size_t w = 0; w < sizeof wanted / sizeof *wanted; w++) {
-        SmMesh mesh = make(wanted[w].name);
-        SmMeshInfo info = sm_mesh_info(&mesh);
+        SmMeshInfo info = sm_mesh_info(mesh_of(wanted[w].name));
         int a = wanted[w].axis;
         assert_float_equal(info.high[a] - info.low[a], wanted[w].length, 1e-12);
         assert_float_equal(info.low[1], 0, 1e-12);
-        sm_mesh_free(&mesh);
     }
-    SmMesh statue = make("statue");
-    SmMeshInfo info = sm_mesh_info(&statue);
+    SmMeshInfo info = sm_mesh_info(mesh_of("statue"));
     assert_float_equal(info.high[0] - info.low[0], 0.81, 0.02); /* the Happy Buddha's box */
     assert_float_equal(info.high[2] - info.low[2], 0.81, 0.02);
-    sm_mesh_free(&statue);
 }
 
 /* Of the lattice's place and material. */
@@ -124,14 +137,12 @@ TEST(test_shapes_are_closed_and_have_the_same_bits_everywhere)
     const SmShape *shapes = sm_shapes(&count);
     assert_int_equal(count, sizeof wanted / sizeof *wanted);
     for (int s = 0; s < count; s++) {
-        SmMesh mesh = make(shapes[s].name);
-        assert_sound(&shapes[s], &mesh);
-        unsigned long long found = sm_mesh_hash(&mesh);
-        unsigned long long lattice = hash_of_lattice(&mesh, shapes[s].name);
+        assert_sound(&shapes[s], &shape_mesh[s]);
+        unsigned long long found = sm_mesh_hash(&shape_mesh[s]);
+        unsigned long long lattice = hash_of_lattice(&shape_mesh[s], shapes[s].name);
         assert_string_equal(wanted[s].name, shapes[s].name);
         if (found != wanted[s].mesh || lattice != wanted[s].lattice)
             fail_msg("%s: mesh 0x%llx, lattice 0x%llx", wanted[s].name, found, lattice);
-        sm_mesh_free(&mesh);
     }
 }
 
@@ -168,14 +179,13 @@ static int pieces_above(const SmMesh *mesh, double y)
 
 TEST(test_fingers_are_separate)
 {
-    SmMesh hand = make("hand");
-    SmMeshInfo info = sm_mesh_info(&hand);
+    const SmMesh *hand = mesh_of("hand");
+    SmMeshInfo info = sm_mesh_info(hand);
     double top = info.high[1];
-    assert_int_equal(pieces_above(&hand, 0.97 * top), 1); /* the middle finger alone */
-    assert_int_equal(pieces_above(&hand, 0.72 * top), 4);
-    assert_int_equal(pieces_above(&hand, 0.60 * top), 2); /* palm and thumb */
-    assert_int_equal(pieces_above(&hand, 0.10 * top), 1);
-    sm_mesh_free(&hand);
+    assert_int_equal(pieces_above(hand, 0.97 * top), 1); /* the middle finger alone */
+    assert_int_equal(pieces_above(hand, 0.72 * top), 4);
+    assert_int_equal(pieces_above(hand, 0.60 * top), 2); /* palm and thumb */
+    assert_int_equal(pieces_above(hand, 0.10 * top), 1);
 }
 
 TEST(test_unknown_name)

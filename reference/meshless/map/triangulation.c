@@ -228,8 +228,9 @@ static void number_fans(RefTriangulation *surface)
 static void count_rims(RefTriangulation *surface)
 {
     long corners = 3 * surface->triangles, edges = 0;
+    long room = surface->room > surface->triangles ? surface->room : surface->triangles;
     surface->rims = 0;
-    surface->rim = sm_alloc((size_t)corners, sizeof *surface->rim);
+    surface->rim = sm_alloc(3 * (size_t)room, sizeof *surface->rim);
     for (int c = 0; c < corners; c++) surface->rim[c] = -1;
     for (int c = 0; c < corners; c++) {
         edges += surface->twin[c] < c;
@@ -319,24 +320,29 @@ static long measure_rim(const RefTriangulation *surface, int first, double *leng
     return edges;
 }
 
-/* Makes room for more triangles and vertices. */
-static void widen(RefTriangulation *surface, long triangles, long vertices)
+/* Makes room for more triangles and fewer vertices, and for a quarter more than that. Whether the
+ * arrays have moved. */
+static bool widen(RefTriangulation *surface, long triangles)
 {
-    size_t corners = 3 * (size_t)(surface->triangles + triangles);
-    size_t count = (size_t)(surface->vertices + vertices);
+    long all = surface->triangles + triangles;
+    if (all <= surface->room) return false;
+    surface->room = all + all / 4;
+    size_t corners = 3 * (size_t)surface->room;
+    size_t count = (size_t)(surface->vertices + surface->room - surface->triangles);
     surface->vertex = sm_realloc(surface->vertex, corners, sizeof *surface->vertex);
     surface->twin = sm_realloc(surface->twin, corners, sizeof *surface->twin);
     surface->length = sm_realloc(surface->length, corners, sizeof *surface->length);
     surface->source = sm_realloc(surface->source, count, sizeof *surface->source);
     surface->corner = sm_realloc(surface->corner, count, sizeof *surface->corner);
     surface->position = sm_realloc(surface->position, count, sizeof *surface->position);
+    return true;
 }
 
 /* A triangle of each of the rim's edges and its middle. */
 static void fill_rim(RefTriangulation *surface, int first, const double middle[3], long edges)
 {
     long from = 3 * surface->triangles, corners = from + 3 * edges, v = surface->vertices;
-    widen(surface, edges, 1);
+    widen(surface, edges);
     surface->triangles += edges;
     surface->vertices++;
     surface->source[v] = -1;
@@ -582,13 +588,13 @@ static void halve_edge(RefTriangulation *surface, int ab)
     join(surface, ba, mb);
 }
 
-/* Room for triangles and one vertex, with no rim on them. */
+/* Room for triangles with no rim on them. */
 static void widen_inside(RefTriangulation *surface, long triangles)
 {
-    size_t corners = 3 * (size_t)(surface->triangles + triangles);
-    widen(surface, triangles, 1);
-    surface->rim = sm_realloc(surface->rim, corners, sizeof *surface->rim);
-    for (size_t c = 3 * (size_t)surface->triangles; c < corners; c++) surface->rim[c] = -1;
+    if (widen(surface, triangles))
+        surface->rim = sm_realloc(surface->rim, 3 * (size_t)surface->room, sizeof *surface->rim);
+    for (long c = 3 * surface->triangles; c < 3 * (surface->triangles + triangles); c++)
+        surface->rim[c] = -1;
 }
 
 /* What rim an edge is on that is now another corner's. */
@@ -667,7 +673,7 @@ long ref_triangulation_split(RefTriangulation *surface)
     count = 0;
     for (int c = 0; c < 3 * surface->triangles; c++)
         count += surface->twin[c] > c && is_chord(surface, rim, c);
-    widen(surface, 2 * count, count);
+    widen(surface, 2 * count);
     for (int c = 0; c < 3 * surface->triangles; c++) /* what moves, moves to later corners */
         if (is_chord(surface, rim, c)) halve_edge(surface, c);
     sm_free_all(rim, surface->rim);
@@ -749,6 +755,7 @@ RefTriangulation ref_triangulation_copy(const RefTriangulation *surface)
     copy.source = sm_copy(surface->source, count, sizeof *copy.source);
     copy.corner = sm_copy(surface->corner, count, sizeof *copy.corner);
     copy.position = sm_copy(surface->position, count, sizeof *copy.position);
+    copy.room = 0;
     return copy;
 }
 

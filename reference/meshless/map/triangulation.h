@@ -10,6 +10,7 @@
 
 typedef struct {
     long triangles, vertices;
+    long room;             /* triangles that there is room for; 0, too, where for no more */
     int *vertex;           /* [3 * triangles] at every corner */
     int *twin;             /* [3 * triangles] the corner whose edge is the same one, or -1: a rim */
     double *length;        /* [3 * triangles] of every corner's edge */

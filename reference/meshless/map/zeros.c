@@ -28,6 +28,7 @@ static int points_of(const Star *star)
 typedef struct {
     RefTriangulation *surface;
     double **step;
+    long *room;                    /* triangles that there is room for in `step` */
     double complex model[3], zero; /* the zero's z */
 } Place;
 
@@ -121,6 +122,17 @@ static int holds(const Star *star, double complex zero, double weight[3])
     return -1;
 }
 
+/* As many steps as the surface has corners now. */
+static void widen(const Place *place)
+{
+    long triangles = place->surface->triangles;
+    if (triangles <= *place->room) return;
+    *place->room = triangles + triangles / 4;
+    for (int d = 0; d < 2; d++)
+        place->step[d] =
+            sm_realloc(place->step[d], 3 * (size_t)*place->room, sizeof *place->step[d]);
+}
+
 /* Halves the edge across from one of the corners at the zero; the new vertex stands where the model
  * says, moved by what the edge's ends are off on average. */
 static void halve_across(const Place *place, Star *star, int k)
@@ -137,9 +149,7 @@ static void halve_across(const Place *place, Star *star, int k)
     double complex b_c = step_of(place, bc), c_a = step_of(place, ca);
     double complex a_d = step_of(place, ad), d_b = step_of(place, db);
     int added = ref_triangulation_halve(surface, ab);
-    size_t corners = 3 * (size_t)surface->triangles;
-    for (int d = 0; d < 2; d++)
-        place->step[d] = sm_realloc(place->step[d], corners, sizeof *place->step[d]);
+    widen(place);
     set_step(place, ab, am);
     set_step(place, bc, -c_a - am);
     set_step(place, ba, -mb);
@@ -176,9 +186,7 @@ static int insert(const Place *place, Star *star, int k, const double weight[3])
         away[from] = w[i] - centre;
     }
     int added = ref_triangulation_insert(surface, triangle, turned), first = 3 * triangle;
-    size_t corners = 3 * (size_t)surface->triangles;
-    for (int d = 0; d < 2; d++)
-        place->step[d] = sm_realloc(place->step[d], corners, sizeof *place->step[d]);
+    widen(place);
     const int begin[3] = {first, added, added + 3};
     star->count = 3;
     for (int i = 0; i < 3; i++) {
@@ -351,7 +359,8 @@ int ref_zeros_place(RefTriangulation *surface, double *step[2], int *zero)
 {
     int *saddle = sm_alloc(2 * (size_t)ref_zeros_count(surface), sizeof *saddle);
     int found = find_saddles(surface, step[1], saddle);
-    Place place = {.surface = surface, .step = step};
+    long room = surface->triangles;
+    Place place = {.surface = surface, .step = step, .room = &room};
     bool single = found > 0;
     for (int n = 0; n < found && single; n++) {
         bool open = surface->rim[surface->corner[saddle[n]]] >= 0;
