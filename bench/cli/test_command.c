@@ -528,6 +528,17 @@ TEST(what_can_break_says_what_did)
     assert_non_null(strstr(result.out, "\nchanges: none\n"));
 }
 
+/* A scene for other engines: its wind pulls at a shell of some hundred grams with a thousand times
+ * its weight. */
+TEST(a_shell_bears_any_wind)
+{
+    needs_solver();
+    Result result;
+    run("run flower --engine shell --frames 5 --no-output", &result);
+    assert_int_equal(result.code, 0);
+    assert_non_null(strstr(result.out, "\nforces stretched parts of it to "));
+}
+
 TEST(a_full_disk_is_an_error)
 {
     char command[512];

@@ -9,6 +9,7 @@
 #include "../motion/rotation.h"
 #include "../solve/least_squares.h"
 #include "projection.h"
+#include "tension.h"
 
 #define CONST(array) ((const double(*)[3])(array))
 
@@ -62,6 +63,19 @@ static void make_forces(RefSheet *sheet)
     weigh(sheet);
 }
 
+static bool is_tense(const RefSheet *sheet, const double (*tug)[2][3])
+{
+    return ref_tension_matters(&sheet->warp, tug, &sheet->options.shell, &sheet->steps.damping,
+                               sheet->steps.h);
+}
+
+/* From the next pose on these forces act. */
+static void pull(RefSheet *sheet, const double (*force)[3])
+{
+    ref_warp_pull(&sheet->warp, force);
+    sheet->tense = is_tense(sheet, (const double(*)[2][3])sheet->warp.tug);
+}
+
 SmCode ref_sheet_create(const RefChart *chart, const RefSheetOptions *options, RefSheet *sheet,
                         SmError *error)
 {
@@ -76,7 +90,7 @@ SmCode ref_sheet_create(const RefChart *chart, const RefSheetOptions *options, R
         return code;
     }
     make_forces(sheet);
-    ref_warp_pull(&sheet->warp, CONST(sheet->weight));
+    pull(sheet, CONST(sheet->weight));
     ref_sheet_pose(sheet);
     return SM_OK;
 }
@@ -262,7 +276,7 @@ static void shift_pieces(RefSheet *sheet, double (*u)[3])
 {
     const RefWarp *warp = &sheet->warp;
     double(*shift)[3] = warp->all;
-    ref_warp_anchor(&sheet->warp, u);
+    ref_warp_match(&sheet->warp, CONST(warp->moved), u);
     memset(shift, 0, (size_t)warp->pieces * sizeof *shift);
     for (int k = sheet->holds - 1; k >= 0; k--) {
         const RefSheetHold *hold = sheet->hold + k;
@@ -388,7 +402,7 @@ SmCode ref_sheet_renew(RefSheet *sheet, double *u, double *v, const double *move
 void ref_sheet_anchor(RefSheet *sheet)
 {
     start_holds(sheet);
-    ref_warp_pull(&sheet->warp, CONST(sheet->weight));
+    pull(sheet, CONST(sheet->weight));
     ref_sheet_pose(sheet);
 }
 
@@ -406,13 +420,30 @@ void ref_sheet_aim(RefSheet *sheet, int k, const double pose[3][4])
 /* The slopes of one coordinate of the places that are held, and the answers. */
 static void find_slopes(RefSheet *sheet, int axis)
 {
+
     size_t size = 3 * (size_t)sheet->warp.nodes, from = (size_t)(axis * sheet->followers) * size;
+    sheet->waiting[axis] = 0;
     if (sheet->followers == 0) return;
     for (int f = 0; f < sheet->followers; f++)
         ref_warp_slope(&sheet->warp, (const double(*)[2])sheet->hold[sheet->follower[f]].flux, axis,
                        (double(*)[3])(sheet->slope + from + (size_t)f * size));
     ref_solver_solve_several(sheet->steps.solver, sheet->followers, sheet->slope + from, NULL,
                              sheet->answer + from);
+}
+
+/* Those of the coordinate whose forces have done most since it was its turn, or of all. In part
+ * forces count for every coordinate: none waits for more than some ten steps. */
+static void renew_slopes(RefSheet *sheet, bool all)
+{
+    double force[3] = {0};
+    int next = 0;
+    for (int c = 0; c < 3 * sheet->followers; c++) force[c % 3] += fabs(sheet->gap[c]);
+    for (int axis = 0; axis < 3; axis++) {
+        sheet->waiting[axis] += force[axis] + (force[0] + force[1] + force[2]) / 8;
+        if (sheet->waiting[axis] > sheet->waiting[next]) next = axis;
+    }
+    for (int axis = 0; axis < 3; axis++)
+        if (all || axis == next) find_slopes(sheet, axis);
 }
 
 /* Where slopes and answers of coordinate number c of all followers' begin. */
@@ -425,8 +456,8 @@ void ref_sheet_pose(RefSheet *sheet)
 {
     set_targets(sheet);
     ref_warp_pose(&sheet->warp, CONST(sheet->steps.u));
-    for (int axis = 0; axis < 3; axis++) find_slopes(sheet, axis);
-    sheet->axis = 0;
+    for (int c = 0; c < 3 * sheet->followers; c++) sheet->gap[c] = 0;
+    renew_slopes(sheet, true);
 }
 
 /* By how much the holds that others lead are to move, less what these speeds make them. */
@@ -472,14 +503,47 @@ static void close_gaps(RefSheet *sheet)
     }
 }
 
+/* Of forces, and of what closed the last step's gaps; the caller frees. */
+static double (*all_tugs(const RefSheet *sheet))[2][3]
+{
+    size_t places = REF_WARP_PLACES * (size_t)sheet->warp.cells;
+    double(*tug)[2][3] = sm_copy(sheet->warp.tug, places, sizeof *tug);
+    double lead = 1 + sheet->steps.damping.stiffness_damping / sheet->steps.h;
+    for (int c = 0; c < 3 * sheet->followers; c++) {
+        const RefSheetHold *hold = sheet->hold + sheet->follower[c / 3];
+        for (size_t at = 0; at < places; at++)
+            for (int k = 0; k < 2; k++)
+                tug[at][k][c % 3] += lead * sheet->gap[c] * hold->flux[at][k];
+    }
+    return tug;
+}
+
 static void take_pushes(RefSheet *sheet)
 {
     for (long n = 0; n < sheet->warp.nodes; n++)
         for (int d = 0; d < 3; d++)
             sheet->force[n][d] = sheet->weight[n][d] + sheet->impulse[n][d] / sheet->options.h;
     ref_warp_pull(&sheet->warp, CONST(sheet->force));
+    double(*tug)[2][3] = all_tugs(sheet);
+    sheet->tense = is_tense(sheet, (const double(*)[2][3])tug);
+    free(tug);
     ref_warp_pose(&sheet->warp, CONST(sheet->steps.u));
     memset(sheet->impulse, 0, (size_t)sheet->warp.nodes * sizeof *sheet->impulse);
+}
+
+/* Gaps that it opens are closed. */
+static void bear_tension(RefSheet *sheet)
+{
+    size_t count = 3 * (size_t)sheet->followers;
+    double(*tug)[2][3] = all_tugs(sheet);
+    double stretch = ref_tension_bear(&sheet->warp, (const double(*)[2][3])tug, &sheet->steps);
+    sheet->stretch = fmax(sheet->stretch, stretch);
+    free(tug);
+    if (!count) return;
+    double *before = sm_copy(sheet->gap, count, sizeof *before);
+    close_gaps(sheet);
+    for (size_t c = 0; c < count; c++) sheet->gap[c] += before[c];
+    free(before);
 }
 
 void ref_sheet_step(RefSheet *sheet)
@@ -493,11 +557,12 @@ void ref_sheet_step(RefSheet *sheet)
     memcpy(steps->force, warp->pulled, (size_t)warp->nodes * sizeof *warp->pulled);
     ref_steps_go(steps);
     if (sheet->followers) close_gaps(sheet);
-    if (sheet->pushed) ref_warp_pull(&sheet->warp, CONST(sheet->weight));
+    if (sheet->tense) bear_tension(sheet);
+    bool tense = sheet->tense;
+    if (sheet->pushed) pull(sheet, CONST(sheet->weight));
     sheet->pushed = false;
     ref_warp_pose(&sheet->warp, CONST(steps->u));
-    find_slopes(sheet, sheet->axis);
-    sheet->axis = (sheet->axis + 1) % 3;
+    renew_slopes(sheet, tense);
 }
 
 void ref_sheet_off(const RefSheet *sheet, int k, double *place, double *turn)

@@ -42,17 +42,19 @@ typedef struct {
     RefWarp warp;
     double (*weight)[3], (*force)[3]; /* [nodes] gravity; and with what pushes add to it */
     double (*impulse)[3];             /* [nodes] the next step's pushes */
-    bool pushed;
+    bool pushed, tense;               /* tense: the forces now are what tension.h is about */
+    double stretch;                   /* the largest under such forces */
     int holds;
     RefSheetHold *hold;
     int followers, *follower; /* holds that others lead */
     /* [3][followers][3 nodes] the slopes of the three coordinates of followers' places by the
      * parameters, and what forces along these do. */
     double *slope, *answer;
-    double *gap, *yield; /* [3 followers]; and its square: how far a force at each moves each */
+    double *gap, *yield; /* [3 followers] the last step's forces there, by h / (b + h); and its
+                            square: how far a force at each moves each */
     RefRows rows;        /* of the steps: what leading holds bind, and shapes and turns of others */
     double *aim;         /* [rows] their values */
-    int axis;            /* whose slopes are found after the next step */
+    double waiting[3];   /* what forces along coordinates did since their slopes were found */
     bool *leant; /* [nodes] whose normals at rest the last ref_sheet_renew() changed; or NULL */
 } RefSheet;
 
@@ -72,9 +74,10 @@ SmCode ref_sheet_hold(RefSheet *sheet, int grips, const RefSheetGrip *grip, SmEr
 void ref_sheet_aim(RefSheet *sheet, int k, const double pose[3][4]);
 
 /* One step of h. Forces, and what a piece's holds beyond its first need to be where they are to be,
- * act along the slopes that the surface's places have by the parameters: of one axis a step these
- * are found anew, with a solve for each hold. What is left of the holds after the step is spread
- * over the surface, which meets them to rounding, and is taken up in the next step. */
+ * act along the slopes that the surface's places have by the parameters: of one axis a step, that
+ * of most force, these are found anew, with a solve for each hold; of all under tension. What is
+ * left of the holds after the step is spread over the surface, which meets them to rounding, and is
+ * taken up in the next step. */
 void ref_sheet_step(RefSheet *sheet);
 
 /* After u and v were changed from outside: where the surface is then, with all slopes; the next

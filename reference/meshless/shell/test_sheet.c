@@ -2,6 +2,7 @@
 #include "../motion/rotation.h"
 #include "foot.h"
 #include "sheet.h"
+#include "tension.h"
 #include "test_charts.h"
 #include "test_shell.h"
 
@@ -245,15 +246,14 @@ TEST(forces_are_slopes_of_their_work)
 }
 
 /* A free bowl that is pushed off its middle goes on as its momentum says, spinning or not. */
-TEST(pushes_become_momentum)
+static void check_momentum(double push)
 {
-    needs_solver();
     RefSheet sheet;
     bowl(&sheet);
     double all[3] = {0}, before[3] = {0}, mass = 0;
     for (long n = 0; n < sheet.warp.nodes; n += 7)
         for (int d = 0; d < 3; d++) {
-            sheet.impulse[n][d] = random_between(&seed, -1, 1);
+            sheet.impulse[n][d] = random_between(&seed, -push, push);
             all[d] += sheet.impulse[n][d];
         }
     sheet.pushed = true;
@@ -274,6 +274,145 @@ TEST(pushes_become_momentum)
     }
     free(M);
     ref_sheet_free(&sheet);
+}
+
+TEST(pushes_become_momentum)
+{
+    needs_solver();
+    for (int power = -2; power <= 3; power++) check_momentum(pow(10, power));
+}
+
+/* Of all the steps, so many weights along a way, spread evenly over the strip's last quarter. */
+static double (*load_of(const RefSheet *sheet, double weights, const double way[3]))[3]
+{
+    enum { ACROSS = 20 };
+    double force[3], each = weights * 9.81 * 1000 * 0.005 * 0.2 / (ACROSS * ACROSS);
+    double(*load)[3] = sm_alloc((size_t)sheet->warp.nodes, sizeof *load);
+    for (int d = 0; d < 3; d++) force[d] = each * way[d];
+    for (int n = 0; n < ACROSS * ACROSS; n++)
+        push_at(&sheet->shell, 1 - 0.25 * (n / ACROSS + 0.5) / ACROSS,
+                0.2 * (n % ACROSS + 0.5) / ACROSS, force, *load);
+    return load;
+}
+
+/* One step under it; what work it does. */
+static double step_under(RefSheet *sheet, const double (*load)[3])
+{
+    double work = 0;
+    for (long n = 0; n < sheet->warp.nodes; n++)
+        for (int d = 0; d < 3; d++) {
+            work -= load[n][d] * sheet->warp.moved[n][d];
+            sheet->impulse[n][d] += load[n][d] * sheet->options.h;
+        }
+    sheet->pushed = true;
+    ref_sheet_step(sheet);
+    for (long n = 0; n < sheet->warp.nodes; n++) work += sm_dot(load[n], sheet->warp.moved[n]);
+    return work;
+}
+
+/* A strip without damping, held or free, a little out of its plane. */
+static void trembling_strip(bool held, RefSheet *sheet)
+{
+    RefChart chart = strip_chart();
+    RefSheetOptions options = strip;
+    RefSheetGrip grip = grip_at(0, 0.1);
+    SmError error = {0};
+    options.damping = (RefDamping){0, 0};
+    sheet_of(&chart, &options, sheet);
+    assert_int_equal(ref_sheet_hold(sheet, held, &grip, &error), SM_OK);
+    for (long n = 0; n < sheet->warp.nodes; n++)
+        sheet->steps.v[3 * n + 2] = random_between(&seed, -1e-6, 1e-6);
+    free(grip.theta);
+}
+
+/* Far beyond what a step bears that takes forces as they are where it begins. */
+TEST(energy_gains_no_more_than_the_work_of_any_force)
+{
+    needs_solver();
+    const double way[][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 0, 1}, {0.5, 0.7, 0.5}};
+    for (int trial = 0; trial < 24; trial++) {
+        RefSheet sheet;
+        trembling_strip(trial % 2, &sheet);
+        double(*load)[3] = load_of(&sheet, pow(10, 1 + trial / 2 % 3), way[trial / 6]);
+        double before = ref_steps_energy(&sheet.steps), all = 0;
+        for (int step = 0; step < 150; step++) {
+            double work = step_under(&sheet, CONST(load)), place, turn;
+            double energy = ref_steps_energy(&sheet.steps);
+            all += fabs(work);
+            assert_true(energy - before <= work + 1e-9 * all);
+            before = energy;
+            if (trial % 2 == 0) continue;
+            ref_sheet_off(&sheet, 0, &place, &turn);
+            assert_true(place < 1e-6 && turn < 1e-6);
+        }
+        free(load);
+        ref_sheet_free(&sheet);
+    }
+}
+
+/* It is stretched as if it had been pulled slowly, and comes to rest in its plane; under less than
+ * makes waves grow steps are as they were. */
+TEST(a_strip_that_is_pulled_hard_stays_plane)
+{
+    needs_solver();
+    const double weights[] = {3, 9, 20};
+    for (int trial = 0; trial < 3; trial++) {
+        RefSheet sheet;
+        trembling_strip(true, &sheet);
+        double(*load)[3] = load_of(&sheet, weights[trial], (const double[]){1, 0, 0}), work = 0;
+        for (int step = 0; step < 300; step++) work += step_under(&sheet, CONST(load));
+        for (long n = 0; n < sheet.warp.nodes; n++)
+            assert_true(fabs(sheet.warp.moved[n][2]) < 1e-3);
+        assert_true(fabs(ref_steps_energy(&sheet.steps) / work - 0.5) < 0.005);
+        ref_warp_pull(&sheet.warp, CONST(load));
+        bool matters =
+            ref_tension_matters(&sheet.warp, (const double(*)[2][3])sheet.warp.tug,
+                                &sheet.options.shell, &sheet.options.damping, sheet.options.h);
+        assert_int_equal(matters, trial > 0);
+        free(load);
+        ref_sheet_free(&sheet);
+    }
+}
+
+/* Both ends held, which are 1% farther apart than at rest in the end. */
+static void part_ends(RefSheet *sheet)
+{
+    RefSheetGrip grip[2] = {grip_at(0, 0.1), grip_at(1, -0.1)};
+    SmError error = {0};
+    assert_int_equal(ref_sheet_hold(sheet, 2, grip, &error), SM_OK);
+    for (int step = 1; step <= 100; step++) {
+        const double pose[3][4] = {{1, 0, 0, 1e-4 * step}, {0, 1, 0, 0}, {0, 0, 1, 0}};
+        ref_sheet_aim(sheet, 1, pose);
+        ref_sheet_step(sheet);
+    }
+    for (int k = 0; k < 2; k++) free(grip[k].theta);
+}
+
+/* What a second hold needs pulls at the surface, too: it stays plane, and under forces it comes to
+ * rest. */
+TEST(holds_are_forces)
+{
+    needs_solver();
+    const double weights[] = {0, 30, 100};
+    for (int trial = 0; trial < 3; trial++) {
+        RefSheet sheet;
+        trembling_strip(false, &sheet);
+        part_ends(&sheet);
+        double(*load)[3] = load_of(&sheet, weights[trial], (const double[]){0, 1, 1});
+        double before = 0, energy = 0, place, turn;
+        for (int step = 0; step < 300; step++) {
+            before = energy;
+            step_under(&sheet, CONST(load));
+            energy = ref_steps_energy(&sheet.steps);
+            ref_sheet_off(&sheet, 1, &place, &turn);
+            assert_true(place < 1e-6 && turn < 1e-6);
+        }
+        assert_true(fabs(energy - before) < 1e-4 * energy);
+        for (long n = 0; weights[trial] == 0 && n < sheet.warp.nodes; n++)
+            assert_true(fabs(sheet.warp.moved[n][2]) < 1e-5);
+        free(load);
+        ref_sheet_free(&sheet);
+    }
 }
 
 /* Points beside the surface go with it in rigid motions; in others as their feet and normals do. */

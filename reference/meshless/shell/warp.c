@@ -477,8 +477,7 @@ static void turn_normal(RefWarp *warp, long n)
     for (int d = 0; d < 3; d++) warp->turned[n][d] = normal[d] - warp->rest_normal[n][d];
 }
 
-/* Adds to a field, of every piece that nothing holds, what makes its mean that of another. */
-static void match_means(RefWarp *warp, const double (*model)[3], double (*field)[3])
+void ref_warp_match(RefWarp *warp, const double (*model)[3], double (*field)[3])
 {
     double(*shift)[3] = warp->all;
     memset(shift, 0, (size_t)warp->pieces * sizeof *shift);
@@ -487,11 +486,6 @@ static void match_means(RefWarp *warp, const double (*model)[3], double (*field)
             shift[warp->piece[n]][d] += warp->mass[n] * (model[n][d] - field[n][d]);
     for (long n = 0; n < warp->nodes; n++)
         for (int d = 0; d < 3; d++) field[n][d] += shift[warp->piece[n]][d];
-}
-
-void ref_warp_anchor(RefWarp *warp, double (*u)[3])
-{
-    match_means(warp, (const double(*)[3])warp->moved, u);
 }
 
 void ref_warp_pose(RefWarp *warp, const double (*u)[3])
@@ -506,7 +500,7 @@ void ref_warp_pose(RefWarp *warp, const double (*u)[3])
                 warp->drawn[n][d] + warp->sum[n][FORCE + d] + tied * warp->answer[n][d];
         }
     solve(warp, (const double(*)[3])warp->right, (const double(*)[3])warp->target, warp->moved);
-    match_means(warp, u, warp->moved);
+    ref_warp_match(warp, u, warp->moved);
     for (long n = 0; n < warp->nodes; n++) turn_normal(warp, n);
 }
 

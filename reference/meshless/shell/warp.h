@@ -89,9 +89,9 @@ SmCode ref_warp_solver(const RefWarp *warp, const RefRows *rows, RefSolver **sol
  * solves. */
 void ref_warp_pull(RefWarp *warp, const double (*force)[3]);
 
-/* Adds to u, [nodes][3], of every piece that is not held the constant that makes its mean that of
- * `moved`. */
-void ref_warp_anchor(RefWarp *warp, double (*u)[3]);
+/* Adds to a field, [nodes][3], of every piece that is not held the constant that makes its mean
+ * that of another one. */
+void ref_warp_match(RefWarp *warp, const double (*model)[3], double (*field)[3]);
 
 /* moved, turned and pulled from u, [nodes][3]. O(cells * covers), and three solves. */
 void ref_warp_pose(RefWarp *warp, const double (*u)[3]);
