@@ -271,7 +271,7 @@ void bench_shell_check_state(BenchRunner *runner, BenchElasticFound *found)
         memcpy(slope, sheet->slope, 3 * size * (size_t)sheet->followers * sizeof *slope);
     bench_runner_step(runner);
     /* what acted is less by what tension held back */
-    if (sheet->tense) memcpy(force, sheet->steps.force, size * sizeof *force);
+    if (sheet->bore) memcpy(force, sheet->steps.force, size * sizeof *force);
     check_step(sheet, before, force, slope, found);
     check_holds(body, found);
     check_skin(body, found);

@@ -15,10 +15,17 @@ static int make_all(void **state)
 {
     (void)state;
     int count;
+    SmError error = {0};
     const SmShape *shapes = sm_shapes(&count);
-    if (count != sizeof shape_mesh / sizeof *shape_mesh) return 1;
+    if (count != sizeof shape_mesh / sizeof *shape_mesh) {
+        print_error("%d shapes\n", count);
+        return 1;
+    }
     for (int s = 0; s < count; s++)
-        if (sm_shape_mesh(shapes[s].name, &shape_mesh[s], NULL) != SM_OK) return 1;
+        if (sm_shape_mesh(shapes[s].name, &shape_mesh[s], &error) != SM_OK) {
+            print_error("%s: %s\n", shapes[s].name, error.text);
+            return 1;
+        }
     return 0;
 }
 

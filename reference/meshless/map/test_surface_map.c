@@ -419,6 +419,34 @@ static void refused(const SmMesh *mesh, const char *why)
     if (!strstr(error.text, why)) fail_msg("%s", error.text);
 }
 
+/* Arrays have room for no more triangles after a cut than there are. */
+TEST(a_handle_is_cut_after_a_hole_was_closed)
+{
+    enum { SIDE = 24 };
+    SmMesh mesh = grid_mesh(SIDE, SIDE, true, true, on_torus, 0, &seed);
+    RefTriangulation surface;
+    SmError error;
+    int loop[SIDE], found = 0;
+    mesh.triangle_count -= 2; /* the last quadrangle */
+    assert_int_equal(ref_triangulation_create(&mesh, "torus", 0, &surface, &error), SM_OK);
+    assert_true(surface.genus == 1 && surface.rims == 1);
+    assert_int_equal(ref_triangulation_close(&surface, 10, 100, 10), 1);
+    for (int c = 0; c < 3 * surface.triangles && found < SIDE; c++) { /* the first row's edges */
+        int from = surface.source[surface.vertex[c]];
+        int to = surface.source[surface.vertex[ref_corner_next(c)]];
+        if (from == found && to == (found + 1) % SIDE) {
+            loop[found++] = c;
+            c = -1;
+        }
+    }
+    assert_int_equal(found, SIDE);
+    ref_triangulation_cut(&surface, SIDE, loop);
+    assert_true(surface.genus == 0 && surface.rims == 0);
+    assert_int_equal(surface.vertices - surface.triangles / 2, 2);
+    ref_triangulation_free(&surface);
+    sm_mesh_free(&mesh);
+}
+
 TEST(surfaces_without_a_map_are_refused)
 {
     needs_solver();

@@ -200,11 +200,13 @@ static SmCode take_piece(RefTriangulation *surface, const char *name, double sha
         name, pieces, largest, count);
 }
 
-/* Gives every fan of corners a vertex of its own; `source` are the numbers that corners had. */
+/* Gives every fan of corners a vertex of its own; `source` are the numbers that corners had. What
+ * room for more triangles there was is gone. */
 static void number_fans(RefTriangulation *surface)
 {
     size_t corners = 3 * (size_t)surface->triangles;
     int *before = surface->vertex;
+    surface->room = 0;
     surface->vertex = sm_alloc(corners, sizeof *surface->vertex);
     surface->source = sm_alloc(corners, sizeof *surface->source);
     surface->corner = sm_alloc(corners, sizeof *surface->corner);

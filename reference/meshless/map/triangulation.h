@@ -10,7 +10,7 @@
 
 typedef struct {
     long triangles, vertices;
-    long room;             /* triangles that there is room for; 0, too, where for no more */
+    long room;             /* triangles that arrays hold; 0: just those that there are */
     int *vertex;           /* [3 * triangles] at every corner */
     int *twin;             /* [3 * triangles] the corner whose edge is the same one, or -1: a rim */
     double *length;        /* [3 * triangles] of every corner's edge */

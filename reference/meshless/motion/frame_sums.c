@@ -101,6 +101,7 @@ static void place(const RefSkin *skin, const RefSkinBlock *block, const double (
  * wider vectors than the processor's through memory. */
 enum { WIDE = SM_VECTOR_BYTES / sizeof(double) };
 typedef double Wide __attribute__((vector_size(SM_VECTOR_BYTES), aligned(sizeof(double))));
+_Static_assert(REF_FRAME_SLOPES % WIDE == 0, "whole vectors");
 
 /* Parts side by side, four and two, and one parameter's entries of six rows. */
 typedef double Four __attribute__((vector_size(4 * sizeof(double)), aligned(sizeof(double))));
@@ -151,6 +152,8 @@ typedef double Points
 typedef long long PointBits __attribute__((vector_size(REF_SKIN_SHARED * sizeof(double))));
 typedef float PointFloats
     __attribute__((vector_size(REF_SKIN_SHARED * sizeof(float)), aligned(sizeof(float))));
+
+_Static_assert(REF_SKIN_SHARED == 8, "lanes are numbered below");
 
 static void weigh(const RefSkinShare *share, const double (*times)[REF_SKIN_ROOM],
                   const int *number, float *row)
@@ -225,6 +228,7 @@ static void spread(int count, const int *node, const double (*slope)[REF_FRAME_S
 
 /* Sums that stay in registers: some rows of them, two vectors wide. */
 enum { HIGH = SM_VECTOR_BYTES < 64 ? 4 : 8 };
+_Static_assert(REF_FRAME_TILE % HIGH == 0 && REF_FRAME_TILE % (2 * WIDE) == 0, "whole blocks");
 
 static void square_block(int rows, int columns, const double *left, const double *right,
                          double *sum)

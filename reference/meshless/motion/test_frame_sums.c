@@ -49,6 +49,43 @@ TEST(rows_are_squared)
             }
     }
 }
+
+/* Functions' parts, of which some are one node's: the sums of a field, and the rows of roots. */
+TEST(parts_are_summed_and_make_rows)
+{
+    enum { NODES = 5, FUNCTIONS = 9, COLUMNS = REF_FRAME_TILE };
+    unsigned seed = 4;
+    for (int trial = 0; trial < TRIALS; trial++) {
+        double part[FUNCTIONS][6], u[NODES][3], sum[3][6], root[6][6][3];
+        double row[6][COLUMNS] = {{0}}, wanted[6][COLUMNS] = {{0}};
+        int node[FUNCTIONS], place[NODES], count = random_int(&seed, FUNCTIONS + 1);
+        for (int n = 0; n < NODES; n++) {
+            place[n] = NODES - 1 - n;
+            for (int d = 0; d < 3; d++) u[n][d] = random_between(&seed, -1, 1);
+        }
+        for (int n = 0; n < count; n++) {
+            node[n] = random_int(&seed, NODES);
+            for (int m = 0; m < 6; m++) part[n][m] = random_between(&seed, -1, 1);
+        }
+        for (int m = 0; m < 6; m++)
+            for (int k = 0; k < 18; k++) root[m][k / 3][k % 3] = random_between(&seed, -1, 1);
+        ref_frame_sums.derive(count, node, (const double(*)[6])part, (const double(*)[3])u, sum);
+        ref_frame_sums.root(count, node, place, (const double(*)[6])part,
+                            (const double(*)[6][3])root, COLUMNS, row[0]);
+        for (int m = 0; m < 6; m++)
+            for (int d = 0; d < 3; d++) {
+                double one = 0;
+                for (int n = 0; n < count; n++) one += part[n][m] * u[node[n]][d];
+                assert_true(fabs(sum[d][m] - one) < 1e-13);
+                for (int n = 0; n < count; n++)
+                    for (int i = 0; i < 6; i++)
+                        wanted[i][3 * place[node[n]] + d] += part[n][m] * root[m][i][d];
+            }
+        for (int i = 0; i < 6; i++)
+            for (int c = 0; c < COLUMNS; c++) assert_true(fabs(row[i][c] - wanted[i][c]) < 1e-13);
+    }
+}
+
 /* Points of a solid and of a shell in a block of any size: each from its own weights, and none
  * beyond the last. */
 TEST(points_are_placed)

@@ -186,7 +186,7 @@ bool ref_cracks_look(const RefCracks *cracks, const double low[2], const double 
 
 /* The pieces whose boxes touch that of two places, and others near it, rising: of the box that was
  * looked at last, or one about them that is three times as wide. */
-static const int *among(const RefCracks *cracks, const double a[2], const double b[2], int *count)
+static const RefCracksNear *near_to(const RefCracks *cracks, const double a[2], const double b[2])
 {
     bool inside = !cracks->stale;
     double low[2], high[2];
@@ -202,8 +202,7 @@ static const int *among(const RefCracks *cracks, const double a[2], const double
         high[d] += wide;
     }
     if (!inside) ref_cracks_look(cracks, low, high);
-    *count = (int)cracks->near.count;
-    return cracks->near.piece;
+    return &cracks->near;
 }
 
 /* Moves the tip on: what is ahead of the arm's pieces grows by `more`. */
@@ -262,14 +261,14 @@ static bool begins_at(const RefCrackPiece *piece, const double at[2], double tra
 static bool first_meeting(const RefCracks *cracks, const double tip[2], const double to[2],
                           double *share)
 {
-    int count, plane = ref_chart_plane(cracks->chart, tip);
+    int plane = ref_chart_plane(cracks->chart, tip);
     double way[2];
     bool any = false;
-    const int *member = among(cracks, tip, to, &count);
+    const RefCracksNear *near = near_to(cracks, tip, to);
     way_from(tip, to, way);
     double trace = OVERSHOOT * length_of(way);
-    for (int n = 0; n < count; n++) {
-        const RefCrackPiece *piece = cracks->piece + member[n];
+    for (long n = 0; n < near->count; n++) {
+        const RefCrackPiece *piece = cracks->piece + near->piece[n];
         double there;
         if (piece->at.plane != plane || begins_at(piece, tip, trace) ||
             !meets(piece, tip, to, &there) || there >= *share ||
@@ -369,12 +368,11 @@ static const double whole[6] = {1};
 static bool pass(const RefCracks *cracks, bool earlier, const double x[3], const double from[3],
                  double reach, double part[6])
 {
-    int count;
-    const int *member = among(cracks, x, from, &count);
+    const RefCracksNear *near = near_to(cracks, x, from);
     int plane = ref_chart_plane(cracks->chart, x);
     memcpy(part, whole, sizeof whole);
-    for (int n = 0; n < count; n++) {
-        const RefCrackPiece *piece = cracks->piece + member[n];
+    for (long n = 0; n < near->count; n++) {
+        const RefCrackPiece *piece = cracks->piece + near->piece[n];
         double f[6], ahead = earlier ? piece->before : piece->ahead;
         if (earlier && piece->born == cracks->now) continue;
         if (!crosses(cracks, piece, plane, x, from)) continue;
@@ -538,11 +536,11 @@ bool ref_cracks_fan(const RefCracks *cracks, bool earlier, const RefGrid *grid,
                     const double from[2], double reach, double (*part)[6])
 {
     Fan fan = fan_of(cracks, grid, from);
-    int count, places = grid->count[0] * grid->count[1];
+    int places = grid->count[0] * grid->count[1];
     bool any = false;
-    among(cracks, fan.low, fan.high, &count);
+    const RefCracksNear *near = near_to(cracks, fan.low, fan.high);
     const RefCrackPiece *piece;
-    for (long n = 0; (piece = next_piece(&fan, &cracks->near, &n));) {
+    for (long n = 0; (piece = next_piece(&fan, near, &n));) {
         double ahead = earlier ? piece->before : piece->ahead;
         if ((earlier && piece->born == cracks->now) || !in_the_way(&fan, piece)) continue;
         for (int p = 0; !any && p < places; p++) memcpy(part[p], whole, sizeof whole);
@@ -582,11 +580,10 @@ bool ref_cracks_fan_changed(const RefCracks *cracks, const RefGrid *grid, const 
 
 bool ref_cracks_part(const RefCracks *cracks, const double x[2], const double from[2])
 {
-    int count;
-    const int *member = among(cracks, x, from, &count);
+    const RefCracksNear *near = near_to(cracks, x, from);
     int plane = ref_chart_plane(cracks->chart, x);
-    for (int n = 0; n < count; n++)
-        if (crosses(cracks, cracks->piece + member[n], plane, x, from)) return true;
+    for (long n = 0; n < near->count; n++)
+        if (crosses(cracks, cracks->piece + near->piece[n], plane, x, from)) return true;
     return false;
 }
 

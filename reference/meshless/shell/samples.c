@@ -291,33 +291,43 @@ typedef struct {
     int count;
 } Pending;
 
-/* Room for what the samples see, and all pending that see a node. Others are looked at from beside
- * where they are. */
-static Pending lay_out(double edge, int count, RefSamplesWork *work, RefSamples *samples)
+/* The functions of a sample that sees no node, as one beside it sees them: on a crack it may. */
+static const RefShape *look_beside(double edge, const RefSamples *samples, int p,
+                                   RefSamplesWork *work)
+{
+    ref_samples_shape(work->nodes, work->basis, edge, samples->theta[p], &work->shape);
+    return &work->shape;
+}
+
+/* Where each sample's functions begin; and all pending that see a node, of `count`. */
+static Pending count_seen(double edge, int count, RefSamplesWork *work, RefSamples *samples)
 {
     int seen[REF_SAMPLES_PER_CELL] = {0};
-    RefShape *shape = &work->shape;
     Pending pending = {.count = 0};
     for (int n = 0; n < count; n++)
         for (int p = 0; p < REF_SAMPLES_PER_CELL; p++) seen[p] += work->node[n].weight[0][p] > 0;
-    for (int pass = 0; pass < 2; pass++) {
-        for (int p = 0; p < REF_SAMPLES_PER_CELL; p++) {
-            if (pass == 0 && seen[p]) pending.count += pending.is[p] = true;
-            if (!pending.is[p])
-                ref_samples_shape(work->nodes, work->basis, edge, samples->theta[p], shape);
-            long at = samples->start[p];
-            samples->start[p + 1] = at + (pending.is[p] ? seen[p] : shape->count);
-            for (int n = 0; pass == 1 && !pending.is[p] && n < shape->count; n++) {
-                samples->node[at + n] = shape->node[n];
-                ref_samples_part(shape, n, samples->part[at + n]);
-            }
-        }
-        size_t all = (size_t)samples->start[REF_SAMPLES_PER_CELL];
-        if (pass == 1) break;
-        samples->node = sm_realloc(NULL, all, sizeof *samples->node);
-        samples->part = sm_realloc(NULL, all, sizeof *samples->part);
+    for (int p = 0; p < REF_SAMPLES_PER_CELL; p++) {
+        pending.is[p] = seen[p] > 0;
+        pending.count += pending.is[p];
+        samples->start[p + 1] = samples->start[p] + seen[p];
+        if (!pending.is[p]) samples->start[p + 1] += look_beside(edge, samples, p, work)->count;
     }
     return pending;
+}
+
+/* Of those that are not pending. */
+static void take_others(double edge, const Pending *pending, RefSamplesWork *work,
+                        RefSamples *samples)
+{
+    for (int p = 0; p < REF_SAMPLES_PER_CELL; p++) {
+        long at = samples->start[p];
+        if (pending->is[p] || samples->start[p + 1] == at) continue;
+        const RefShape *shape = look_beside(edge, samples, p, work);
+        for (int n = 0; n < shape->count; n++) {
+            samples->node[at + n] = shape->node[n];
+            ref_samples_part(shape, n, samples->part[at + n]);
+        }
+    }
 }
 
 /* The functions of samples where those of a basis vary no faster than the cell can bear; of the
@@ -363,7 +373,11 @@ void ref_samples_of(const RefQuadtree *tree, long cell, double edge, RefSamplesW
     }
     ref_cracks_look(work->cracks, low, high);
     int count = gather((const double(*)[ALONG])at, edge, work);
-    Pending pending = lay_out(edge, count, work, samples);
+    Pending pending = count_seen(edge, count, work, samples);
+    size_t all = (size_t)samples->start[REF_SAMPLES_PER_CELL];
+    samples->node = sm_realloc(NULL, all, sizeof *samples->node);
+    samples->part = sm_realloc(NULL, all, sizeof *samples->part);
+    take_others(edge, &pending, work, samples);
     for (int n = work->basis == bases[1]; n < 3 && pending.count; n++)
         take_basis(bases[n], n == 2, edge, count, work, &pending, samples);
 }

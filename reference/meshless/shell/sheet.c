@@ -17,7 +17,8 @@ static void forget_holds(RefSheet *sheet)
 {
     sheet->hold = NULL;
     sheet->follower = NULL;
-    sheet->aim = sheet->slope = sheet->answer = sheet->gap = sheet->yield = NULL;
+    sheet->aim = sheet->slope = sheet->answer = sheet->gap = sheet->yield = sheet->room = NULL;
+    sheet->tug = NULL;
     sheet->rows = (RefRows){0};
     sheet->holds = sheet->followers = 0;
 }
@@ -28,7 +29,7 @@ static void release(RefSheet *sheet)
         sm_free_all(sheet->hold[k].x, sheet->hold[k].reach, sheet->hold[k].flux);
     ref_rows_free(&sheet->rows);
     sm_free_all(sheet->hold, sheet->follower, sheet->aim, sheet->slope, sheet->answer, sheet->gap,
-                sheet->yield);
+                sheet->yield, sheet->tug, sheet->room);
     forget_holds(sheet);
 }
 
@@ -192,6 +193,7 @@ static void find_leads(RefSheet *sheet, const RefRows *rows)
     sheet->answer = sm_alloc(count * size, sizeof *sheet->answer);
     sheet->gap = sm_alloc(count, sizeof *sheet->gap);
     sheet->yield = sm_alloc(count * count, sizeof *sheet->yield);
+    sheet->tug = sm_alloc(REF_WARP_PLACES * (size_t)sheet->warp.cells, sizeof *sheet->tug);
 }
 
 /* Rows of the parameters: all of a leading hold's, of others the points' but for the first one's
@@ -420,7 +422,6 @@ void ref_sheet_aim(RefSheet *sheet, int k, const double pose[3][4])
 /* The slopes of one coordinate of the places that are held, and the answers. */
 static void find_slopes(RefSheet *sheet, int axis)
 {
-
     size_t size = 3 * (size_t)sheet->warp.nodes, from = (size_t)(axis * sheet->followers) * size;
     sheet->waiting[axis] = 0;
     if (sheet->followers == 0) return;
@@ -503,11 +504,13 @@ static void close_gaps(RefSheet *sheet)
     }
 }
 
-/* Of forces, and of what closed the last step's gaps; the caller frees. */
-static double (*all_tugs(const RefSheet *sheet))[2][3]
+/* Of forces, and of what closed the last step's gaps. */
+static const double (*all_tugs(RefSheet *sheet))[2][3]
 {
     size_t places = REF_WARP_PLACES * (size_t)sheet->warp.cells;
-    double(*tug)[2][3] = sm_copy(sheet->warp.tug, places, sizeof *tug);
+    double(*tug)[2][3] = sheet->tug;
+    if (sheet->followers == 0) return (const double(*)[2][3])sheet->warp.tug;
+    memcpy(tug, sheet->warp.tug, places * sizeof *tug);
     double lead = 1 + sheet->steps.damping.stiffness_damping / sheet->steps.h;
     for (int c = 0; c < 3 * sheet->followers; c++) {
         const RefSheetHold *hold = sheet->hold + sheet->follower[c / 3];
@@ -515,7 +518,7 @@ static double (*all_tugs(const RefSheet *sheet))[2][3]
             for (int k = 0; k < 2; k++)
                 tug[at][k][c % 3] += lead * sheet->gap[c] * hold->flux[at][k];
     }
-    return tug;
+    return (const double(*)[2][3])tug;
 }
 
 static void take_pushes(RefSheet *sheet)
@@ -524,9 +527,7 @@ static void take_pushes(RefSheet *sheet)
         for (int d = 0; d < 3; d++)
             sheet->force[n][d] = sheet->weight[n][d] + sheet->impulse[n][d] / sheet->options.h;
     ref_warp_pull(&sheet->warp, CONST(sheet->force));
-    double(*tug)[2][3] = all_tugs(sheet);
-    sheet->tense = is_tense(sheet, (const double(*)[2][3])tug);
-    free(tug);
+    sheet->tense = is_tense(sheet, all_tugs(sheet));
     ref_warp_pose(&sheet->warp, CONST(sheet->steps.u));
     memset(sheet->impulse, 0, (size_t)sheet->warp.nodes * sizeof *sheet->impulse);
 }
@@ -535,15 +536,15 @@ static void take_pushes(RefSheet *sheet)
 static void bear_tension(RefSheet *sheet)
 {
     size_t count = 3 * (size_t)sheet->followers;
-    double(*tug)[2][3] = all_tugs(sheet);
-    double stretch = ref_tension_bear(&sheet->warp, (const double(*)[2][3])tug, &sheet->steps);
+    if (!sheet->room)
+        sheet->room = sm_alloc(ref_tension_room(&sheet->warp) + count, sizeof *sheet->room);
+    double *before = sheet->room, *room = before + count;
+    double stretch = ref_tension_bear(&sheet->warp, all_tugs(sheet), &sheet->steps, room);
     sheet->stretch = fmax(sheet->stretch, stretch);
-    free(tug);
     if (!count) return;
-    double *before = sm_copy(sheet->gap, count, sizeof *before);
+    memcpy(before, sheet->gap, count * sizeof *before);
     close_gaps(sheet);
     for (size_t c = 0; c < count; c++) sheet->gap[c] += before[c];
-    free(before);
 }
 
 void ref_sheet_step(RefSheet *sheet)
@@ -558,11 +559,11 @@ void ref_sheet_step(RefSheet *sheet)
     ref_steps_go(steps);
     if (sheet->followers) close_gaps(sheet);
     if (sheet->tense) bear_tension(sheet);
-    bool tense = sheet->tense;
+    sheet->bore = sheet->tense;
     if (sheet->pushed) pull(sheet, CONST(sheet->weight));
     sheet->pushed = false;
     ref_warp_pose(&sheet->warp, CONST(steps->u));
-    renew_slopes(sheet, tense);
+    renew_slopes(sheet, sheet->bore);
 }
 
 void ref_sheet_off(const RefSheet *sheet, int k, double *place, double *turn)

@@ -43,7 +43,10 @@ typedef struct {
     double (*weight)[3], (*force)[3]; /* [nodes] gravity; and with what pushes add to it */
     double (*impulse)[3];             /* [nodes] the next step's pushes */
     bool pushed, tense;               /* tense: the forces now are what tension.h is about */
-    double stretch;                   /* the largest under such forces */
+    bool bore;                        /* so were those of the last step */
+    double (*tug)[2][3];              /* [places] of those forces, where holds have followers */
+    double *room;                     /* tension.h's, from the first such step on */
+    double stretch;                   /* the largest in such steps since it was made */
     int holds;
     RefSheetHold *hold;
     int followers, *follower; /* holds that others lead */

@@ -1,7 +1,6 @@
 #include "tension.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "../../../lib/vector.h"
@@ -52,20 +51,19 @@ static void stretches_at(const RefWarp *warp, long at, double *squares, double *
     *product = sqrt(fmax(0, (q[0] * q[1] - q[2] * q[2]) * (S[0] * S[1] - S[2] * S[2]))) / area;
 }
 
-/* T' of all places; and the largest stretch. */
-static double *stiffness_of(const RefWarp *warp, const double (*tug)[2][3], double *most)
+/* T' of all places; returns the largest stretch. */
+static double find_stiffness(const RefWarp *warp, const double (*tug)[2][3], double *stiffness)
 {
-    double *stiffness = sm_alloc((size_t)(PLACES * warp->cells), sizeof *stiffness);
-    *most = 0;
+    double most = 0;
     for (long at = 0; at < PLACES * warp->cells; at++) {
         double squares, product;
         stretches_at(warp, at, &squares, &product);
         stiffness[at] =
             tension_at(warp->place + at, tug[at]) * (sqrt(squares) + sqrt(squares + 4)) / 4;
         double both = sqrt(squares + 2 * product), apart = sqrt(fmax(0, squares - 2 * product));
-        *most = fmax(*most, (both + apart) / 2);
+        most = fmax(most, (both + apart) / 2);
     }
-    return stiffness;
+    return most;
 }
 
 /* G v, of [nodes][3]. */
@@ -117,6 +115,7 @@ static void solve(RefWarp *warp, RefSteps *steps, const double *stiffness, doubl
     long size = 3 * warp->nodes;
     double *r = room, *z = r + size, *p = z + size, *q = p + size, *Gp = steps->other;
     double first = 0, before = INFINITY;
+    memset(p, 0, 2 * (size_t)size * sizeof *p); /* and q */
     balance(steps, x, r);
     apply(warp, stiffness, x, Gp);
     for (long n = 0; n < size; n++) r[n] -= times * Gp[n];
@@ -140,12 +139,18 @@ static void solve(RefWarp *warp, RefSteps *steps, const double *stiffness, doubl
     }
 }
 
-double ref_tension_bear(RefWarp *warp, const double (*tug)[2][3], RefSteps *steps)
+size_t ref_tension_room(const RefWarp *warp)
+{
+    return 5 * 3 * (size_t)warp->nodes + PLACES * (size_t)warp->cells;
+}
+
+double ref_tension_bear(RefWarp *warp, const double (*tug)[2][3], RefSteps *steps, double *room)
 {
     long size = 3 * warp->nodes;
-    double h = steps->h, lead = steps->damping.stiffness_damping + h, stretch;
-    double *stiffness = stiffness_of(warp, tug, &stretch);
-    double *x = sm_alloc(5 * (size_t)size, sizeof *x), *room = x + size;
+    double h = steps->h, lead = steps->damping.stiffness_damping + h;
+    double *x = room, *stiffness = x + 5 * size;
+    double stretch = find_stiffness(warp, tug, stiffness);
+    room += size;
     ref_solver_solve(steps->solver, NULL, steps->speed, x);
     ref_warp_match(warp, (const double(*)[3])steps->v, (double(*)[3])x);
     solve(warp, steps, stiffness, h / lead, x, room);
@@ -155,7 +160,5 @@ double ref_tension_bear(RefWarp *warp, const double (*tug)[2][3], RefSteps *step
         steps->u[n] += h * (x[n] - steps->v[n]);
         steps->v[n] = x[n];
     }
-    free(x);
-    free(stiffness);
     return stretch;
 }

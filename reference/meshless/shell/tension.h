@@ -11,7 +11,10 @@
  * With tangents exp(w) s and a tug of size T the second derivative of the forces' work is
  * T (|s| dw^2 + 2 dw de) at most, whatever the pose, and T' is half of that bound: half is what it
  * takes for the energy never to gain more than the forces' work, of pieces that are free or held
- * once. Of others gaps are closed afterwards (sheet.h), with the factor that knows no tension. */
+ * once. Of others gaps are closed afterwards (sheet.h), with the factor that knows no tension: a
+ * strip between two holds bears being drawn out by half, twice as long it does not come to rest.
+ * What holds alone need counts where forces push as well; in other steps, where curved bodies bear
+ * several times of what a flat strip does, a strip bears 2% of stretch. */
 #ifndef REF_TENSION_H
 #define REF_TENSION_H
 
@@ -26,8 +29,9 @@ bool ref_tension_matters(const RefWarp *warp, const double (*tug)[2][3],
 /* After ref_steps_go(): the step's velocities, displacements and force with tension's stiffness, as
  * the surface was posed when the step began. By conjugate gradients from what holds and mean
  * motions say, with the step's own factor: energy stays bounded wherever they end, momentum is kept
- * to rounding. Returns how far the surface was stretched most, 1 for not at all. O(rounds (cells
- * covers + entries of the factor)). */
-double ref_tension_bear(RefWarp *warp, const double (*tug)[2][3], RefSteps *steps);
+ * to rounding. Returns how far the surface was stretched most, 1 for not at all. `room` is for
+ * ref_tension_room() numbers. O(rounds (cells covers + entries of the factor)). */
+double ref_tension_bear(RefWarp *warp, const double (*tug)[2][3], RefSteps *steps, double *room);
+size_t ref_tension_room(const RefWarp *warp);
 
 #endif

@@ -235,7 +235,9 @@ SmCode ref_solver_create_like(const RefSolver *like, const RefMatrices *matrices
                               RefSolver **solver, SmError *error)
 {
     int size = matrices->stiffness.columns;
-    assert((like->size == size || 3 * like->size == size) && !like->rows);
+    bool same = like->size == size, placed = like->place != NULL;
+    assert(!like->rows && (same || 3 * like->size == size));
+    assert(same ? placed == ref_node_order_fits(matrices) : !placed);
     return create(like, matrices, shift, NULL, solver, error);
 }
 

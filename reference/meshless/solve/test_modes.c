@@ -243,6 +243,60 @@ TEST(cantilever)
     free(u);
 }
 
+/* How far x is from solving (K + 1e6 M) x = b, of b. */
+static double left_of(const RefMatrices *matrices, const double *x, const double *b)
+{
+    int size = matrices->stiffness.columns;
+    double *Kx = sm_alloc(2 * (size_t)size, sizeof *Kx), *Mx = Kx + size, most = 0, largest = 0;
+    ref_sparse_apply(&matrices->stiffness, 1, x, Kx);
+    ref_sparse_apply(&matrices->mass, 3, x, Mx);
+    for (int n = 0; n < size; n++) {
+        most = fmax(most, fabs(Kx[n] + 1e6 * Mx[n] - b[n]));
+        largest = fmax(largest, fabs(b[n]));
+    }
+    free(Kx);
+    return most / largest;
+}
+
+/* In their own order, another solver's, that of a solver of the nodes, and where the mass is
+ * diagonal and says nothing of the entries. */
+TEST(orders_change_no_solution)
+{
+    needs_solver();
+    unsigned seed = 6;
+    RefBody body = beam(0.5);
+    size_t size = 3 * (size_t)body.nodes.count, nodes = size / 3;
+    const RefMatrices *matrices = &body.matrices;
+    double *b = sm_alloc(2 * size, sizeof *b), *x = b + size;
+    for (size_t n = 0; n < size; n++) b[n] = random_between(&seed, -1, 1);
+    RefMatrices lumped = *matrices;
+    lumped.mass = (RefSparse){.columns = (int)nodes,
+                              .start = sm_alloc(nodes + 1, sizeof(int)),
+                              .row = sm_alloc(nodes, sizeof(int)),
+                              .value = sm_alloc(nodes, sizeof(double))};
+    ref_sparse_sums(&matrices->mass, lumped.mass.value);
+    for (size_t n = 0; n < nodes; n++) {
+        lumped.mass.row[n] = (int)n;
+        lumped.mass.start[n + 1] = (int)n + 1;
+    }
+    RefSolver *solver[5] = {NULL};
+    RefMatrices alone = {.stiffness = matrices->mass};
+    assert_int_equal(ref_solver_create(matrices, -1e6, NULL, solver, NULL), SM_OK);
+    assert_int_equal(ref_solver_create(&alone, 0, NULL, solver + 1, NULL), SM_OK);
+    assert_int_equal(ref_solver_create_like(solver[0], matrices, -1e6, solver + 2, NULL), SM_OK);
+    assert_int_equal(ref_solver_create_like(solver[1], matrices, -1e6, solver + 3, NULL), SM_OK);
+    assert_int_equal(ref_solver_create(&lumped, -1e6, NULL, solver + 4, NULL), SM_OK);
+    for (int n = 0; n < 5; n++) {
+        if (n != 1) {
+            ref_solver_solve(solver[n], b, NULL, x);
+            assert_true(left_of(n == 4 ? &lumped : matrices, x, b) < 1e-9);
+        }
+        ref_solver_destroy(solver[n]);
+    }
+    sm_free_all(lumped.mass.start, lumped.mass.row, lumped.mass.value, b);
+    ref_body_free(&body);
+}
+
 /* Several right sides at once, with rows and without: as each alone. */
 TEST(several_are_solved_as_one_by_one)
 {
