@@ -149,9 +149,25 @@ static void factorise(cholmod_sparse *matrix, RefSolver *solver)
     cholmod_factorize(matrix, solver->factor, &solver->common);
 }
 
-/* The order and the places of a factor's entries: those of another solver; of a matrix that is in
- * its nodes' order, that; of others as CHOLMOD finds best. */
-static cholmod_factor *analyse(const RefSolver *like, cholmod_sparse *matrix, RefSolver *solver)
+/* In the order of the nodes, whatever rows add between them: CHOLMOD finds none with so little fill
+ * from the parameters. */
+static cholmod_factor *analyse_by_nodes(cholmod_sparse *matrix, const RefSparse *mass,
+                                        cholmod_common *common)
+{
+    int *place = ref_node_order(mass, common);
+    if (!place) return NULL;
+    int *order = sm_alloc(matrix->ncol, sizeof *order);
+    for (int n = 0; n < (int)matrix->ncol; n++) order[3 * place[n / 3] + n % 3] = n;
+    common->method[0].ordering = CHOLMOD_GIVEN;
+    cholmod_factor *symbolic = cholmod_analyze_p(matrix, order, NULL, 0, common);
+    sm_free_all(place, order);
+    return symbolic;
+}
+
+/* The order and the places of a factor's entries: those of another solver; of nodes' parameters the
+ * order of the nodes, in which the matrix may be; of others as CHOLMOD finds best. */
+static cholmod_factor *analyse(const RefSolver *like, const RefMatrices *matrices,
+                               cholmod_sparse *matrix, RefSolver *solver)
 {
     cholmod_common *common = &solver->common;
     if (like && like->size == solver->size) return cholmod_copy_factor(like->symbolic, common);
@@ -159,7 +175,8 @@ static cholmod_factor *analyse(const RefSolver *like, cholmod_sparse *matrix, Re
         common->nmethods = 1;
         common->method[0].ordering = CHOLMOD_NATURAL;
         common->postorder = false;
-    }
+    } else if (ref_node_order_fits(matrices))
+        return analyse_by_nodes(matrix, &matrices->mass, common);
     return cholmod_analyze(matrix, common);
 }
 
@@ -210,7 +227,7 @@ static SmCode create(const RefSolver *like, const RefMatrices *matrices, double 
     if (rows) solver->A = ref_rows_copy(rows);
     solver->rows = (int)solver->A.count;
     cholmod_sparse *matrix = arrange(like, matrices, shift, solver);
-    if (matrix) solver->symbolic = analyse(like, matrix, solver);
+    if (matrix) solver->symbolic = analyse(like, matrices, matrix, solver);
     if (solver->symbolic) solver->factor = cholmod_copy_factor(solver->symbolic, common);
     if (solver->factor) factorise(matrix, solver);
     cholmod_free_sparse(&matrix, common);
