@@ -11,10 +11,12 @@
  * With tangents exp(w) s and a tug of size T the second derivative of the forces' work is
  * T (|s| dw^2 + 2 dw de) at most, whatever the pose, and T' is half of that bound: half is what it
  * takes for the energy never to gain more than the forces' work, of pieces that are free or held
- * once. Of others gaps are closed afterwards (sheet.h), with the factor that knows no tension: a
- * strip between two holds bears being drawn out by half, twice as long it does not come to rest.
- * What holds alone need counts where forces push as well; in other steps, where curved bodies bear
- * several times of what a flat strip does, a strip bears 2% of stretch. */
+ * once.
+ *
+ * Between two holds of a piece nothing of this is sure: gaps are closed afterwards (sheet.h), with
+ * the factor that knows no tension, and what holds alone need counts where forces push as well. A
+ * flat strip (test_sheet.c) of 1 m stays plane for 3,000 steps without damping when it is drawn out
+ * by 0.5%, with a damping of 1/s and 1 ms by 1%; by 2% it leaves its plane and gains energy. */
 #ifndef REF_TENSION_H
 #define REF_TENSION_H
 

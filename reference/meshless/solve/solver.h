@@ -18,8 +18,9 @@ extern const bool ref_solver_built;
 SmCode ref_solver_create(const RefMatrices *matrices, double shift, const RefRows *rows,
                          RefSolver **solver, SmError *error);
 
-/* The same without rows, of a matrix whose entries are where those are of `like`, which has no rows
- * either: in its order, which takes no time to be found. */
+/* The same in the order of `like`, which takes no time to be found; neither has rows. The matrix has
+ * its entries where that of `like` has them, and both or neither of these masses say where; or
+ * `like` is of the nodes of which the matrix has three parameters each, and no mass. */
 SmCode ref_solver_create_like(const RefSolver *like, const RefMatrices *matrices, double shift,
                               RefSolver **solver, SmError *error);
 void ref_solver_destroy(RefSolver *solver);
