@@ -32,10 +32,11 @@ struct SmEngine {
     int (*triangle)[3]; /* the mesh's, of one that breaks */
     bool drawn;         /* its surface was taken once */
     double pressure, pulse, time;
-    RefShape shape;  /* what blow() works in */
-    double outwards; /* 1 or -1: the way normals look */
-    RefModes modes;  /* of the free shell, if they were asked for, and */
-    RefWarp shown;   /* how it warps then */
+    double (*press)[3]; /* [nodes] what a pressure of 1 does to a shell that does not break */
+    double outwards;    /* 1 or -1: the way normals look */
+    RefShape shape;     /* scratch: functions at a place */
+    RefModes modes;     /* of the free shell, if they were asked for, and */
+    RefWarp shown;      /* how it warps then */
 };
 
 #define CONST(array) ((const double(*)[3])(array))
@@ -54,7 +55,7 @@ static void shell_destroy(SmEngine *engine)
     ref_modes_free(&engine->modes);
     ref_warp_free(&engine->shown);
     sm_free_all(engine->triangle, engine->body.carried, engine->place, engine->rest, engine->before,
-                engine->held, engine);
+                engine->held, engine->press, engine);
 }
 
 static void carry(SmEngine *engine)
@@ -103,6 +104,20 @@ RefShellOptions ref_shell_options(const RefMeshlessOptions *options, double long
         .material = options->material};
 }
 
+/* Functions of a shell that does not break are not kept: they are taken once more. */
+static SmCode make_press(SmEngine *engine, SmError *error)
+{
+    RefShell *shell = &engine->body.sheet.shell;
+    RefSamples samples;
+    SmCode code = ref_samples_take(&shell->tree, &shell->nodes, shell->basis, &samples, error);
+    if (code != SM_OK) return code;
+    engine->press = sm_alloc((size_t)shell->nodes.count, sizeof *engine->press);
+    ref_middle_areas(CONST(shell->X), &samples);
+    ref_middle_press(CONST(shell->X), &samples, 1, engine->press);
+    ref_samples_free(&samples);
+    return SM_OK;
+}
+
 static SmCode make_sheet(const SmEngineParams *params, SmEngine *engine, SmError *error)
 {
     const RefMeshlessOptions *options = params->meshless;
@@ -117,6 +132,8 @@ static SmCode make_sheet(const SmEngineParams *params, SmEngine *engine, SmError
     double start = sm_now();
     code = ref_sheet_create(&engine->body.map.chart, &sheet, &engine->body.sheet, error);
     if (code == SM_OK) code = make_breaking(options, engine, error);
+    if (code == SM_OK && options->pressure != 0 && !engine->body.breaking)
+        code = make_press(engine, error);
     engine->body.matrix_seconds = sm_now() - start;
     return code;
 }
@@ -188,42 +205,16 @@ static SmCode shell_create(const SmVoxels *voxels, const SmEngineParams *params,
     return SM_OK;
 }
 
-/* A pressure's push in places of a shell that does not break, along the normals there. */
-static void press_places(SmEngine *engine, double pressure)
-{
-    RefSheet *sheet = &engine->body.sheet;
-    const RefWarp *warp = &sheet->warp;
-    RefShape *shape = &engine->shape;
-    for (long c = 0, leaf = 0; c < sheet->shell.tree.count; c++) {
-        const RefCell *cell = sheet->shell.tree.cell + c;
-        double middle[2], edge[2];
-        if (cell->child >= 0) continue;
-        ref_quadtree_cell(&sheet->shell.tree, cell, middle, edge);
-        for (int p = 0; p < REF_WARP_PLACES; p++) {
-            const RefWarpPlace *place = warp->place + REF_WARP_PLACES * leaf + p;
-            double theta[3];
-            ref_warp_place_at(middle, edge, p, theta);
-            double push = pressure * edge[0] * edge[1] / REF_WARP_PLACES *
-                          ref_shell_area(&sheet->shell, theta);
-            ref_shell_shape(&sheet->shell, theta, shape);
-            for (int n = 0; n < shape->count; n++)
-                for (int d = 0; d < 3; d++)
-                    sheet->impulse[shape->node[n]][d] += push * shape->value[n] * place->normal[d];
-        }
-        leaf++;
-    }
-}
-
 /* The pressure's push of one step. */
 static void blow(SmEngine *engine)
 {
     RefShellBody *body = &engine->body;
-    double pressure = engine->pressure * body->sheet.options.h * engine->outwards;
-    if (body->breaking)
-        ref_cracked_press(&body->breaking->cracked, pressure, body->sheet.impulse);
-    else
-        press_places(engine, pressure);
-    body->sheet.pushed = true;
+    RefSheet *sheet = &body->sheet;
+    double push = engine->pressure * sheet->options.h * engine->outwards;
+    if (body->breaking) ref_cracked_press(&body->breaking->cracked, push, sheet->impulse);
+    for (long n = 0; !body->breaking && n < sheet->warp.nodes; n++)
+        for (int d = 0; d < 3; d++) sheet->impulse[n][d] += push * engine->press[n][d];
+    sheet->pushed = true;
 }
 
 static void bind(SmEngine *engine);

@@ -355,6 +355,20 @@ static void burst(const Scene *scene, SmEngine *engine, double *time, double *en
     free(sum);
 }
 
+/* One that does not break takes no more from a pulse either. */
+TEST(a_pulse_gives_no_more_than_to_dust)
+{
+    needs_solver();
+    Scene scene = ring_create();
+    double time = 0, energy = 0;
+    scene.options.pressure = 1000;
+    scene.options.pulse = 0.015;
+    SmEngine *engine = engine_of(&scene);
+    for (int step = 0; step < 40; step++) burst(&scene, engine, &time, &energy);
+    assert_true(energy > 0);
+    scene_free(&scene, engine);
+}
+
 /* A pulse of pressure bursts it: nodes are added where cracks run, and what is drawn of the surface
  * comes apart in pieces that are closed. `flying` is the share of its vertices that may be far
  * away: light slivers are. */

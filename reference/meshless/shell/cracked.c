@@ -7,7 +7,6 @@
 
 #include "../../../lib/csr.h"
 #include "../../../lib/vector.h"
-#include "field_place.h"
 #include "field_transfer.h"
 
 enum { SHARE_POINTS = 8 }; /* along a cover's edge */
@@ -211,18 +210,9 @@ int ref_cracked_node(const RefCracked *cracked, const double theta[2])
 
 void ref_cracked_press(const RefCracked *cracked, double pressure, double (*force)[3])
 {
-    for (long c = 0; c < cracked->shell->tree.count; c++) {
-        const RefSamples *samples = &cracked->cell[c].samples;
-        for (long p = 0; p < samples->count; p++) {
-            RefFieldPlace place =
-                ref_field_sample(samples, p, (const double(*)[3])cracked->shell->X);
-            RefFrame frame = ref_field_frame(&place);
-            double push[3];
-            for (int d = 0; d < 3; d++) push[d] = pressure * samples->area[p] * frame.normal[d];
-            for (int n = 0; n < place.count; n++)
-                for (int d = 0; d < 3; d++) force[place.node[n]][d] += place.part[n][0] * push[d];
-        }
-    }
+    for (long c = 0; c < cracked->shell->tree.count; c++)
+        ref_middle_press((const double(*)[3])cracked->shell->X, &cracked->cell[c].samples, pressure,
+                         force);
 }
 
 bool ref_cracked_again(const RefCracked *cracked, long cell)

@@ -114,9 +114,7 @@ bool ref_cracked_seen(const RefCracked *cracked, long node);
 /* One of the nodes that move a place; -1: none does. */
 int ref_cracked_node(const RefCracked *cracked, const double theta[2]);
 
-/* Adds what a pressure, along the normals as they are at rest and on areas that cracks do not
- * change, does to the parameters: over the samples that the mass is of, so that it gives them no
- * more energy than it would give to loose dust. O(samples covers). */
+/* ref_middle_press(), on areas that cracks do not change. */
 void ref_cracked_press(const RefCracked *cracked, double pressure, double (*force)[3]);
 
 /* Whether the last update took samples of a cell again, or of one that is part of it. */

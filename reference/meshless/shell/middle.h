@@ -27,6 +27,12 @@ RefFrame ref_middle_at(const double (*X)[3], int count, const int *node, const d
 
 RefFrame ref_middle_of(const double (*X)[3], const RefShape *shape);
 
+/* Adds what a pressure along the normals does to the parameters: over the samples and areas that
+ * the mass is of, so that it gives that no more energy than it would give to loose dust. O(samples
+ * covers). */
+void ref_middle_press(const double (*X)[3], const RefSamples *samples, double pressure,
+                      double (*force)[3]);
+
 /* Fills in the samples' areas and traces; returns the first without an area, or -1. */
 long ref_middle_areas(const double (*X)[3], RefSamples *samples);
 

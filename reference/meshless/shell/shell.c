@@ -58,13 +58,6 @@ bool ref_shell_at(const RefShell *shell, const double theta[3], RefShape *shape,
     return true;
 }
 
-double ref_shell_area(const RefShell *shell, const double theta[3])
-{
-    if (shell->functions.at) return shell->functions.area(shell->functions.samples, theta);
-    double L = shell->chart.factor(shell->chart.data, theta);
-    return L * L;
-}
-
 void ref_rows_lean(RefRows *rows, const RefShape *shape, const RefFrame *frame,
                    const double direction[3])
 {

@@ -81,7 +81,8 @@ static void add_slopes(const RefShape *shape, int place, int *number, long *room
 /* Whether functions leave the surface its area at a place: between cracks they may not. */
 static bool bears(const RefShell *shell, const double theta[3], const RefFrame *frame)
 {
-    return !shell->functions.at || frame->area > LEAST_AREA * ref_shell_area(shell, theta);
+    const RefShellFunctions *kept = &shell->functions;
+    return !kept->at || frame->area > LEAST_AREA * kept->area(kept->samples, theta);
 }
 
 static void make_cells(const RefShell *shell, RefWarp *warp)

@@ -18,8 +18,8 @@ extern const bool ref_solver_built;
 SmCode ref_solver_create(const RefMatrices *matrices, double shift, const RefRows *rows,
                          RefSolver **solver, SmError *error);
 
-/* The same in the order of `like`, which takes no time to be found; neither has rows. The matrix has
- * its entries where that of `like` has them, and both or neither of these masses say where; or
+/* The same in the order of `like`, which takes no time to be found; neither has rows. The matrix
+ * has its entries where that of `like` has them, and both or neither of these masses say where; or
  * `like` is of the nodes of which the matrix has three parameters each, and no mass. */
 SmCode ref_solver_create_like(const RefSolver *like, const RefMatrices *matrices, double shift,
                               RefSolver **solver, SmError *error);
