@@ -254,6 +254,17 @@ static void check_growth(const RefSheet *sheet, BenchElasticFound *found)
     ref_steps_free(&steps);
 }
 
+/* What acted is less by what tension held back. */
+static void subtract_tension(const RefSteps *steps, double *force)
+{
+    size_t size = (size_t)steps->matrices->stiffness.columns;
+    if (!steps->taut) return;
+    double *back = sm_alloc(size, sizeof *back);
+    ref_sparse_apply(&steps->tension, 3, steps->v, back);
+    for (size_t n = 0; n < size; n++) force[n] -= steps->h * back[n];
+    free(back);
+}
+
 void bench_shell_check_state(BenchRunner *runner, BenchElasticFound *found)
 {
     RefShellBody *body = ref_shell_body(runner->engine);
@@ -270,8 +281,7 @@ void bench_shell_check_state(BenchRunner *runner, BenchElasticFound *found)
     if (sheet->followers)
         memcpy(slope, sheet->slope, 3 * size * (size_t)sheet->followers * sizeof *slope);
     bench_runner_step(runner);
-    /* what acted is less by what tension held back */
-    if (sheet->bore) memcpy(force, sheet->steps.force, size * sizeof *force);
+    subtract_tension(&sheet->steps, force);
     check_step(sheet, before, force, slope, found);
     check_holds(body, found);
     check_skin(body, found);

@@ -83,10 +83,10 @@ void bench_shell_row_describe(const BenchRunner *runner, const SmCounts *counts)
            "integration points are drawn out too far to be stiff\n",
            body->map.dropped, body->map.closed, body->map.handles, body->sheet.shell.soft,
            REF_SAMPLES_PER_CELL * body->sheet.shell.tree.leaves);
-    if (body->sheet.stretch > 1.5)
+    if (body->sheet.tension.stretch > 1.5)
         printf("forces stretched parts of it to %.3g times their length: linear elasticity holds "
                "for some per cent\n",
-               body->sheet.stretch);
+               body->sheet.tension.stretch);
 }
 
 void bench_shell_row_explain(FILE *file, const BenchRow *row)

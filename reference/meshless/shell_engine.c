@@ -267,16 +267,22 @@ static void shell_get(SmEngine *engine, SmField field, double (*values)[3])
     }
 }
 
-/* Displacements and velocities of the parameters, and the time. Cracks are more than that. */
+/* Displacements and velocities of the parameters, the time, and the tension that steps bear. Cracks
+ * are more than that. */
 static long shell_get_state(SmEngine *engine, double *state)
 {
-    const RefSteps *steps = &engine->body.sheet.steps;
-    long size = 3 * engine->body.sheet.warp.nodes;
+    const RefSheet *sheet = &engine->body.sheet;
+    long size = 3 * sheet->warp.nodes, places = REF_WARP_PLACES * sheet->warp.cells;
     if (engine->body.breaking) return 0;
-    if (state) memcpy(state, steps->u, (size_t)size * sizeof *state);
-    if (state) memcpy(state + size, steps->v, (size_t)size * sizeof *state);
-    if (state) state[2 * size] = engine->time;
-    return 2 * size + 1;
+    if (state) {
+        memcpy(state, sheet->steps.u, (size_t)size * sizeof *state);
+        memcpy(state + size, sheet->steps.v, (size_t)size * sizeof *state);
+        state[2 * size] = engine->time;
+        memset(state + 2 * size + 1, 0, (size_t)places * sizeof *state);
+        if (sheet->tension.borne)
+            memcpy(state + 2 * size + 1, sheet->tension.borne, (size_t)places * sizeof *state);
+    }
+    return 2 * size + 1 + places;
 }
 
 static void shell_set_state(SmEngine *engine, const double *state)
@@ -285,6 +291,7 @@ static void shell_set_state(SmEngine *engine, const double *state)
     long size = 3 * sheet->warp.nodes;
     if (engine->body.breaking) return;
     engine->time = state[2 * size];
+    ref_tension_set(&sheet->tension, state + 2 * size + 1, &sheet->warp, &sheet->steps);
     for (long n = 0; n < size; n++)
         sheet->steps.u[n] = state[n] - sheet->options.h * state[size + n];
     ref_sheet_pose(sheet);

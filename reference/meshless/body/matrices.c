@@ -39,13 +39,16 @@ bool ref_matrices_same(const RefMatrices *one, const RefMatrices *other)
     return same_sparse(&one->mass, &other->mass) && same_sparse(&one->stiffness, &other->stiffness);
 }
 
+void ref_sparse_free(RefSparse *sparse)
+{
+    sm_free_all(sparse->start, sparse->row, sparse->value);
+    *sparse = (RefSparse){0};
+}
+
 void ref_matrices_free(RefMatrices *matrices)
 {
-    RefSparse *both[] = {&matrices->mass, &matrices->stiffness};
-    for (int n = 0; n < 2; n++) {
-        sm_free_all(both[n]->start, both[n]->row, both[n]->value);
-        *both[n] = (RefSparse){0};
-    }
+    ref_sparse_free(&matrices->mass);
+    ref_sparse_free(&matrices->stiffness);
 }
 
 void ref_sparse_apply(const RefSparse *sparse, int width, const double *x, double *y)

@@ -35,6 +35,7 @@ typedef struct {
 SmCode ref_matrices_build(const RefOctants *tree, const RefNodes *nodes, RefBasis basis,
                           const RefMaterial *material, RefMatrices *matrices, SmError *error);
 void ref_matrices_free(RefMatrices *matrices);
+void ref_sparse_free(RefSparse *sparse);
 
 /* Whether they have the same entries, bit by bit. */
 bool ref_matrices_same(const RefMatrices *one, const RefMatrices *other);

@@ -17,7 +17,7 @@ static void forget_holds(RefSheet *sheet)
 {
     sheet->hold = NULL;
     sheet->follower = NULL;
-    sheet->aim = sheet->slope = sheet->answer = sheet->gap = sheet->yield = sheet->room = NULL;
+    sheet->aim = sheet->slope = sheet->answer = sheet->gap = sheet->need = sheet->yield = NULL;
     sheet->tug = NULL;
     sheet->rows = (RefRows){0};
     sheet->holds = sheet->followers = 0;
@@ -29,13 +29,14 @@ static void release(RefSheet *sheet)
         sm_free_all(sheet->hold[k].x, sheet->hold[k].reach, sheet->hold[k].flux);
     ref_rows_free(&sheet->rows);
     sm_free_all(sheet->hold, sheet->follower, sheet->aim, sheet->slope, sheet->answer, sheet->gap,
-                sheet->yield, sheet->tug, sheet->room);
+                sheet->need, sheet->yield, sheet->tug);
     forget_holds(sheet);
 }
 
 void ref_sheet_free(RefSheet *sheet)
 {
     release(sheet);
+    ref_tension_free(&sheet->tension);
     ref_steps_free(&sheet->steps);
     ref_warp_free(&sheet->warp);
     ref_shell_free(&sheet->shell);
@@ -64,17 +65,27 @@ static void make_forces(RefSheet *sheet)
     weigh(sheet);
 }
 
-static bool is_tense(const RefSheet *sheet, const double (*tug)[2][3])
+/* Adds to the tugs of other forces what holds need. */
+static void pull_holds(RefSheet *sheet)
 {
-    return ref_tension_matters(&sheet->warp, tug, &sheet->options.shell, &sheet->steps.damping,
-                               sheet->steps.h);
+    const RefWarp *warp = &sheet->warp;
+    size_t places = REF_WARP_PLACES * (size_t)warp->cells;
+    if (sheet->followers) memcpy(warp->tug, sheet->tug, places * sizeof *sheet->tug);
+    for (int c = 0; c < 3 * sheet->followers; c++) {
+        const double(*flux)[2] = (const double(*)[2])sheet->hold[sheet->follower[c / 3]].flux;
+        for (size_t at = 0; at < places; at++)
+            for (int k = 0; k < 2; k++) warp->tug[at][k][c % 3] += sheet->need[c] * flux[at][k];
+    }
 }
 
-/* From the next pose on these forces act. */
+/* From the next pose on these forces act, and what holds need. */
 static void pull(RefSheet *sheet, const double (*force)[3])
 {
+    size_t places = REF_WARP_PLACES * (size_t)sheet->warp.cells;
     ref_warp_pull(&sheet->warp, force);
-    sheet->tense = is_tense(sheet, (const double(*)[2][3])sheet->warp.tug);
+    if (sheet->followers) memcpy(sheet->tug, sheet->warp.tug, places * sizeof *sheet->tug);
+    pull_holds(sheet);
+    sheet->changed = true;
 }
 
 SmCode ref_sheet_create(const RefChart *chart, const RefSheetOptions *options, RefSheet *sheet,
@@ -91,7 +102,6 @@ SmCode ref_sheet_create(const RefChart *chart, const RefSheetOptions *options, R
         return code;
     }
     make_forces(sheet);
-    pull(sheet, CONST(sheet->weight));
     ref_sheet_pose(sheet);
     return SM_OK;
 }
@@ -192,6 +202,7 @@ static void find_leads(RefSheet *sheet, const RefRows *rows)
     sheet->slope = sm_alloc(count * size, sizeof *sheet->slope);
     sheet->answer = sm_alloc(count * size, sizeof *sheet->answer);
     sheet->gap = sm_alloc(count, sizeof *sheet->gap);
+    sheet->need = sm_alloc(count, sizeof *sheet->need);
     sheet->yield = sm_alloc(count * count, sizeof *sheet->yield);
     sheet->tug = sm_alloc(REF_WARP_PLACES * (size_t)sheet->warp.cells, sizeof *sheet->tug);
 }
@@ -404,7 +415,7 @@ SmCode ref_sheet_renew(RefSheet *sheet, double *u, double *v, const double *move
 void ref_sheet_anchor(RefSheet *sheet)
 {
     start_holds(sheet);
-    pull(sheet, CONST(sheet->weight));
+    ref_tension_drop(&sheet->tension, &sheet->steps);
     ref_sheet_pose(sheet);
 }
 
@@ -423,28 +434,17 @@ void ref_sheet_aim(RefSheet *sheet, int k, const double pose[3][4])
 static void find_slopes(RefSheet *sheet, int axis)
 {
     size_t size = 3 * (size_t)sheet->warp.nodes, from = (size_t)(axis * sheet->followers) * size;
-    sheet->waiting[axis] = 0;
     if (sheet->followers == 0) return;
     for (int f = 0; f < sheet->followers; f++)
         ref_warp_slope(&sheet->warp, (const double(*)[2])sheet->hold[sheet->follower[f]].flux, axis,
                        (double(*)[3])(sheet->slope + from + (size_t)f * size));
-    ref_solver_solve_several(sheet->steps.solver, sheet->followers, sheet->slope + from, NULL,
-                             sheet->answer + from);
+    ref_solver_solve_several(ref_steps_solver(&sheet->steps), sheet->followers, sheet->slope + from,
+                             NULL, sheet->answer + from);
 }
 
-/* Those of the coordinate whose forces have done most since it was its turn, or of all. In part
- * forces count for every coordinate: none waits for more than some ten steps. */
-static void renew_slopes(RefSheet *sheet, bool all)
+static void find_all_slopes(RefSheet *sheet)
 {
-    double force[3] = {0};
-    int next = 0;
-    for (int c = 0; c < 3 * sheet->followers; c++) force[c % 3] += fabs(sheet->gap[c]);
-    for (int axis = 0; axis < 3; axis++) {
-        sheet->waiting[axis] += force[axis] + (force[0] + force[1] + force[2]) / 8;
-        if (sheet->waiting[axis] > sheet->waiting[next]) next = axis;
-    }
-    for (int axis = 0; axis < 3; axis++)
-        if (all || axis == next) find_slopes(sheet, axis);
+    for (int axis = 0; axis < 3; axis++) find_slopes(sheet, axis);
 }
 
 /* Where slopes and answers of coordinate number c of all followers' begin. */
@@ -455,10 +455,13 @@ static size_t of_coordinate(const RefSheet *sheet, size_t c)
 
 void ref_sheet_pose(RefSheet *sheet)
 {
+    for (int c = 0; c < 3 * sheet->followers; c++) sheet->need[c] = 0;
+    sheet->next = 0;
+    sheet->judged = 0;
+    pull(sheet, CONST(sheet->weight));
     set_targets(sheet);
     ref_warp_pose(&sheet->warp, CONST(sheet->steps.u));
-    for (int c = 0; c < 3 * sheet->followers; c++) sheet->gap[c] = 0;
-    renew_slopes(sheet, true);
+    find_all_slopes(sheet);
 }
 
 /* By how much the holds that others lead are to move, less what these speeds make them. */
@@ -497,6 +500,7 @@ static void close_gaps(RefSheet *sheet)
     ref_least_squares_solve((int)count, 0, S, gap);
     for (size_t c = 0; c < count; c++) {
         const double *answer = sheet->answer + of_coordinate(sheet, c);
+        sheet->need[c] += (1 + sheet->steps.damping.stiffness_damping / sheet->steps.h) * gap[c];
         for (size_t n = 0; n < size; n++) {
             sheet->steps.u[n] += gap[c] * answer[n];
             sheet->steps.v[n] += gap[c] * answer[n] / sheet->steps.h;
@@ -504,47 +508,28 @@ static void close_gaps(RefSheet *sheet)
     }
 }
 
-/* Of forces, and of what closed the last step's gaps. */
-static const double (*all_tugs(RefSheet *sheet))[2][3]
-{
-    size_t places = REF_WARP_PLACES * (size_t)sheet->warp.cells;
-    double(*tug)[2][3] = sheet->tug;
-    if (sheet->followers == 0) return (const double(*)[2][3])sheet->warp.tug;
-    memcpy(tug, sheet->warp.tug, places * sizeof *tug);
-    double lead = 1 + sheet->steps.damping.stiffness_damping / sheet->steps.h;
-    for (int c = 0; c < 3 * sheet->followers; c++) {
-        const RefSheetHold *hold = sheet->hold + sheet->follower[c / 3];
-        for (size_t at = 0; at < places; at++)
-            for (int k = 0; k < 2; k++)
-                tug[at][k][c % 3] += lead * sheet->gap[c] * hold->flux[at][k];
-    }
-    return (const double(*)[2][3])tug;
-}
-
 static void take_pushes(RefSheet *sheet)
 {
     for (long n = 0; n < sheet->warp.nodes; n++)
         for (int d = 0; d < 3; d++)
             sheet->force[n][d] = sheet->weight[n][d] + sheet->impulse[n][d] / sheet->options.h;
-    ref_warp_pull(&sheet->warp, CONST(sheet->force));
-    sheet->tense = is_tense(sheet, all_tugs(sheet));
+    pull(sheet, CONST(sheet->force));
     ref_warp_pose(&sheet->warp, CONST(sheet->steps.u));
     memset(sheet->impulse, 0, (size_t)sheet->warp.nodes * sizeof *sheet->impulse);
 }
 
-/* Gaps that it opens are closed. */
+/* Tension is found where forces are no longer those that it was found for. */
 static void bear_tension(RefSheet *sheet)
 {
-    size_t count = 3 * (size_t)sheet->followers;
-    if (!sheet->room)
-        sheet->room = sm_alloc(ref_tension_room(&sheet->warp) + count, sizeof *sheet->room);
-    double *before = sheet->room, *room = before + count;
-    double stretch = ref_tension_bear(&sheet->warp, all_tugs(sheet), &sheet->steps, room);
-    sheet->stretch = fmax(sheet->stretch, stretch);
-    if (!count) return;
-    memcpy(before, sheet->gap, count * sizeof *before);
-    close_gaps(sheet);
-    for (size_t c = 0; c < count; c++) sheet->gap[c] += before[c];
+    double need = 0;
+    for (int c = 0; c < 3 * sheet->followers; c++) need += fabs(sheet->need[c]);
+    if (sheet->changed || need > 1.25 * sheet->judged || need < sheet->judged / 2) {
+        ref_tension_find(&sheet->tension, &sheet->warp, &sheet->options.shell, &sheet->steps);
+        sheet->judged = need;
+        sheet->changed = false;
+    }
+    if (ref_tension_bear(&sheet->tension, &sheet->warp, &sheet->options.shell, &sheet->steps))
+        find_all_slopes(sheet);
 }
 
 void ref_sheet_step(RefSheet *sheet)
@@ -552,18 +537,21 @@ void ref_sheet_step(RefSheet *sheet)
     RefSteps *steps = &sheet->steps;
     const RefWarp *warp = &sheet->warp;
     if (sheet->pushed) take_pushes(sheet);
+    bear_tension(sheet);
     set_targets(sheet);
     for (long r = 0; r < sheet->rows.count; r++)
         steps->speed[r] = (sheet->aim[r] - ref_rows_apply(&sheet->rows, r, steps->u)) / steps->h;
     memcpy(steps->force, warp->pulled, (size_t)warp->nodes * sizeof *warp->pulled);
     ref_steps_go(steps);
     if (sheet->followers) close_gaps(sheet);
-    if (sheet->tense) bear_tension(sheet);
-    sheet->bore = sheet->tense;
-    if (sheet->pushed) pull(sheet, CONST(sheet->weight));
+    if (sheet->pushed)
+        pull(sheet, CONST(sheet->weight));
+    else
+        pull_holds(sheet);
     sheet->pushed = false;
     ref_warp_pose(&sheet->warp, CONST(steps->u));
-    renew_slopes(sheet, sheet->bore);
+    find_slopes(sheet, sheet->next);
+    sheet->next = (sheet->next + 1) % 3;
 }
 
 void ref_sheet_off(const RefSheet *sheet, int k, double *place, double *turn)

@@ -4,6 +4,7 @@
 #define REF_SHEET_H
 
 #include "steps.h"
+#include "tension.h"
 #include "warp.h"
 
 typedef struct {
@@ -42,22 +43,22 @@ typedef struct {
     RefWarp warp;
     double (*weight)[3], (*force)[3]; /* [nodes] gravity; and with what pushes add to it */
     double (*impulse)[3];             /* [nodes] the next step's pushes */
-    bool pushed, tense;               /* tense: the forces now are what tension.h is about */
-    bool bore;                        /* so were those of the last step */
-    double (*tug)[2][3];              /* [places] of those forces, where holds have followers */
-    double *room;                     /* tension.h's, from the first such step on */
-    double stretch;                   /* the largest in such steps since it was made */
+    bool pushed, changed;             /* changed: forces have, since tension was found, */
+    double judged;                    /* where all holds together needed this */
+    RefTension tension;
+    double (*tug)[2][3]; /* [places] of forces but for what holds need */
     int holds;
     RefSheetHold *hold;
     int followers, *follower; /* holds that others lead */
     /* [3][followers][3 nodes] the slopes of the three coordinates of followers' places by the
      * parameters, and what forces along these do. */
     double *slope, *answer;
-    double *gap, *yield; /* [3 followers] the last step's forces there, by h / (b + h); and its
-                            square: how far a force at each moves each */
+    int next;            /* the coordinate whose turn it is to be found anew */
+    double *need;        /* [3 followers] the forces there */
+    double *gap, *yield; /* what the last step added, by h / (b + h); and [3 followers] square: how
+                            far a force at each moves each */
     RefRows rows;        /* of the steps: what leading holds bind, and shapes and turns of others */
     double *aim;         /* [rows] their values */
-    double waiting[3];   /* what forces along coordinates did since their slopes were found */
     bool *leant; /* [nodes] whose normals at rest the last ref_sheet_renew() changed; or NULL */
 } RefSheet;
 
@@ -76,15 +77,16 @@ SmCode ref_sheet_hold(RefSheet *sheet, int grips, const RefSheetGrip *grip, SmEr
  * rest. */
 void ref_sheet_aim(RefSheet *sheet, int k, const double pose[3][4]);
 
-/* One step of h. Forces, and what a piece's holds beyond its first need to be where they are to be,
- * act along the slopes that the surface's places have by the parameters: of one axis a step, that
- * of most force, these are found anew, with a solve for each hold; of all under tension. What is
- * left of the holds after the step is spread over the surface, which meets them to rounding, and is
- * taken up in the next step. */
+/* One step of h. Forces, and what a piece's holds beyond its first needed until now to be where
+ * they are to be, act along the slopes that the surface's places have by the parameters; what holds
+ * need more than that along the slopes of up to three steps ago: in turn those of one axis a step
+ * are found anew, with a solve for each hold. What is left of the holds after the step is spread
+ * over the surface, which meets them to rounding, and is taken up in the next step. */
 void ref_sheet_step(RefSheet *sheet);
 
-/* After u and v were changed from outside: where the surface is then, with all slopes; the next
- * steps find these as the first steps do. */
+/* After u and v were changed from outside, and maybe by ref_tension_set() what steps bear: where
+ * the surface is then, with all slopes; the next steps find these, and what holds need, as the
+ * first steps do. */
 void ref_sheet_pose(RefSheet *sheet);
 
 /* After the shell has changed (cracked.h): its new nodes have these displacements, velocities and

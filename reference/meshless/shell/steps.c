@@ -1,11 +1,13 @@
 #include "steps.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 void ref_steps_free(RefSteps *steps)
 {
     ref_solver_destroy(steps->solver);
     ref_rows_free(&steps->rows);
+    ref_steps_slacken(steps);
     sm_free_all(steps->u, steps->v, steps->force, steps->speed, steps->value, steps->right,
                 steps->other);
     *steps = (RefSteps){.solver = NULL};
@@ -45,6 +47,51 @@ SmCode ref_steps_create(const RefMatrices *matrices, const RefDamping *damping, 
     return SM_OK;
 }
 
+SmCode ref_steps_bear(RefSteps *steps, RefSparse *tension, SmError *error)
+{
+    const RefMatrices *matrices = steps->matrices;
+    size_t entries = (size_t)tension->start[tension->columns];
+    double m = ref_steps_mass_share(&steps->damping, steps->h);
+    double times = steps->h / (steps->damping.stiffness_damping + steps->h) / m;
+    RefMatrices heavy = *matrices;
+    RefSolver *solver;
+    heavy.mass.value = sm_copy(matrices->mass.value, entries, sizeof *heavy.mass.value);
+    for (size_t e = 0; e < entries; e++) heavy.mass.value[e] += times * tension->value[e];
+    SmCode code =
+        ref_solver_create(&heavy, -m, steps->rows.count ? &steps->rows : NULL, &solver, error);
+    free(heavy.mass.value);
+    if (code != SM_OK) {
+        ref_sparse_free(tension);
+        return code;
+    }
+    ref_steps_slacken(steps);
+    steps->taut = solver;
+    steps->tension = *tension;
+    return SM_OK;
+}
+
+void ref_steps_slacken(RefSteps *steps)
+{
+    ref_solver_destroy(steps->taut);
+    ref_sparse_free(&steps->tension);
+    steps->taut = NULL;
+}
+
+/* What tension adds on the side of steps that v + u' / (b + h) is solved from. */
+static void add_tension(RefSteps *steps)
+{
+    double lead = 1 / (steps->damping.stiffness_damping + steps->h);
+    double *of_u = steps->other;
+    ref_sparse_apply(&steps->tension, 3, steps->u, of_u);
+    for (int n = 0; n < steps->matrices->stiffness.columns; n++)
+        steps->right[n] += steps->h * lead * lead * of_u[n];
+}
+
+RefSolver *ref_steps_solver(const RefSteps *steps)
+{
+    return steps->taut ? steps->taut : steps->solver;
+}
+
 void ref_steps_go(RefSteps *steps)
 {
     double a = steps->damping.mass_damping, b = steps->damping.stiffness_damping, h = steps->h;
@@ -54,9 +101,10 @@ void ref_steps_go(RefSteps *steps)
     ref_sparse_apply(&steps->matrices->mass, 3, end, right);
     double times = 1 / share_of_K(&steps->damping, h);
     for (int n = 0; n < size; n++) right[n] = times * (right[n] + h * steps->force[n]);
+    if (steps->taut) add_tension(steps);
     for (long r = 0; r < steps->rows.count; r++)
         steps->value[r] = steps->speed[r] + lead * ref_rows_apply(&steps->rows, r, steps->u);
-    ref_solver_solve(steps->solver, right, steps->value, end);
+    ref_solver_solve(ref_steps_solver(steps), right, steps->value, end);
     for (int n = 0; n < size; n++) {
         steps->v[n] = end[n] - lead * steps->u[n];
         steps->u[n] += h * steps->v[n];

@@ -11,6 +11,8 @@ typedef struct {
     double h; /* the step */
     RefSolver *solver;
     RefRows rows;
+    RefSolver *taut; /* with G = `tension`, of the nodes as M is; or NULL */
+    RefSparse tension;
     double *u, *v;         /* [3 nodes] displacements' parameters and velocities */
     double *force;         /* [3 nodes] the caller's to fill in; kept from step to step */
     double *speed;         /* [rows] of what they bind, the caller's to fill in; 0 at first */
@@ -28,6 +30,14 @@ void ref_steps_free(RefSteps *steps);
 
 /* m of the matrix K + m M that steps are solved with. */
 double ref_steps_mass_share(const RefDamping *damping, double h);
+
+/* From now on steps are (M + h C + h^2 (K + G)) v = M v' + h (F - K u'), G = `tension`, which has
+ * M's pattern and is taken over. Factorises that. Errors, and nothing changed: solver.h's. */
+SmCode ref_steps_bear(RefSteps *steps, RefSparse *tension, SmError *error);
+void ref_steps_slacken(RefSteps *steps); /* without G again */
+
+/* What steps are solved with: K + m M, with tension + h / (b + h) G. */
+RefSolver *ref_steps_solver(const RefSteps *steps);
 
 /* (M + h C + h^2 K) v = M v' + h (F - K u'), u = u' + h v, v' and u' from the step before. Solved
  * for v + u' / (b + h), of which the right side needs no K: 1 / h (M (v' + (1 + h a) / (b + h) u')

@@ -147,32 +147,29 @@ static void make_normals(const RefShell *shell, RefWarp *warp)
     ref_shape_free(&shape);
 }
 
-/* Rows of a cell's functions whose squares are g^kl phi_I,k phi_J,l summed over its places, by the
- * metric's root. */
-static void root_rows(const RefWarp *warp, long c, int columns, double *row)
+/* Rows of a cell's functions whose squares are share g^kl phi_I,k phi_J,l summed over its places,
+ * by the metric's root. */
+static void root_rows(const RefWarp *warp, const double *share, long c, int columns, double *row)
 {
     memset(row, 0, LANES * (size_t)columns * sizeof *row);
     for (int p = 0; p < PLACES; p++) {
         const double *q = warp->place[PLACES * c + p].metric;
         if (!(q[0] > 0)) continue; /* no place */
+        double times = share ? sqrt(share[PLACES * c + p]) : 1;
         double first = sqrt(q[0]), beside = q[2] / first;
-        double second = sqrt(fmax(q[1] - beside * beside, 0));
+        double second = times * sqrt(fmax(q[1] - beside * beside, 0));
         for (long e = warp->start[c]; e < warp->start[c + 1]; e++) {
             const double *slope = warp->slope[e] + 2 * p;
             double *to = row + 2 * p * columns + (e - warp->start[c]);
-            to[0] = first * slope[0] + beside * slope[1];
+            to[0] = times * (first * slope[0] + beside * slope[1]);
             to[columns] = second * slope[1];
         }
     }
 }
 
-/* int g^kl phi_I,k phi_J,l over the places: of pairs that have mass together, as integration points
- * are there, too. */
-static void make_laplacian(const RefShell *shell, RefWarp *warp)
+void ref_warp_laplacian(const RefWarp *warp, const RefSparse *M, const double *share, RefSparse *L)
 {
-    const RefSparse *M = &shell->matrices.mass;
     size_t nodes = (size_t)warp->nodes, entries = (size_t)M->start[nodes];
-    RefSparse *L = &warp->laplacian.stiffness;
     int *at = sm_alloc(nodes, sizeof *at); /* of a column's rows in L */
     long most = 0;
     *L = (RefSparse){.columns = M->columns,
@@ -187,7 +184,7 @@ static void make_laplacian(const RefShell *shell, RefWarp *warp)
     for (long c = 0; c < warp->cells; c++) {
         int count = (int)(warp->start[c + 1] - warp->start[c]), columns = ref_frame_columns(count);
         const int *node = warp->node + warp->start[c];
-        root_rows(warp, c, columns, row);
+        root_rows(warp, share, c, columns, row);
         ref_frame_sums.square(LANES, columns, row, square);
         for (int a = 0; a < count; a++) {
             int i = node[a];
@@ -248,7 +245,7 @@ SmCode ref_warp_create(const RefShell *shell, RefWarp *warp, SmError *error)
     warp->sum = sm_alloc(nodes, sizeof *warp->sum);
     make_cells(shell, warp);
     make_normals(shell, warp);
-    make_laplacian(shell, warp);
+    ref_warp_laplacian(warp, &shell->matrices.mass, NULL, &warp->laplacian.stiffness);
     share_mass(shell, warp);
     warp->cut = shell->nodes.cut.pass;
     if (warp->cut) tie(warp);

@@ -85,6 +85,11 @@ SmCode ref_warp_hold(RefWarp *warp, const RefRows *rows, SmError *error);
 SmCode ref_warp_solver(const RefWarp *warp, const RefRows *rows, RefSolver **solver,
                        SmError *error);
 
+/* int share g^kl phi_I,k phi_J,l over the places, [4 cells] shares or NULL: 1; of pairs that have
+ * mass together, as integration points are there, too. The caller frees L's arrays. */
+void ref_warp_laplacian(const RefWarp *warp, const RefSparse *mass, const double *share,
+                        RefSparse *L);
+
 /* Forces at the nodes, [nodes][3], whose work `pulled` is the slope of from the next pose on. Three
  * solves. */
 void ref_warp_pull(RefWarp *warp, const double (*force)[3]);
