@@ -7,7 +7,7 @@
 #include "../../../lib/engine/boundary.h"
 #include "../../../lib/vector.h"
 
-enum { PLACES = REF_WARP_PLACES, SLACK = 100 };
+enum { PLACES = REF_WARP_PLACES, SLACK = 10 };
 
 #define CONST(array) ((const double(*)[3])(array))
 
@@ -33,6 +33,9 @@ static void stretches_at(const RefWarp *warp, long at, double *squares, double *
     *squares = (q[0] * S[0] + q[1] * S[1] + 2 * q[2] * S[2]) / area;
     *product = sqrt(fmax(0, (q[0] * q[1] - q[2] * q[2]) * (S[0] * S[1] - S[2] * S[2]))) / area;
 }
+
+/* Of how much more than there is steps bear too much: what G takes from motion is felt then. */
+static const double TOO_MUCH = 8;
 
 /* T' of all places; returns how far the surface is stretched most, 1 for not at all. */
 static double find(const RefWarp *warp, double *tension)
@@ -84,6 +87,27 @@ void ref_tension_find(RefTension *tension, const RefWarp *warp, const RefShellOp
     tension->matters = matters(tension, NULL, warp, shell, steps);
 }
 
+static bool bears_too_much(const RefTension *tension, const RefWarp *warp)
+{
+    double now = 0, borne = 0;
+    for (long at = 0; at < PLACES * warp->cells; at++) {
+        now += warp->place[at].area * tension->now[at];
+        borne += warp->place[at].area * tension->borne[at];
+    }
+    return borne > TOO_MUCH * now;
+}
+
+/* Twice what there is; and where that comes and goes from place to place, half of what was. */
+static void set_borne(RefTension *tension, const RefWarp *warp)
+{
+    size_t places = PLACES * (size_t)warp->cells;
+    double kept = tension->slack > SLACK ? 0 : 0.5;
+    if (!tension->borne) tension->borne = sm_alloc(places, sizeof *tension->borne);
+    for (size_t at = 0; at < places; at++)
+        tension->borne[at] = fmax(2 * tension->now[at], kept * tension->borne[at]);
+    tension->slack = 0;
+}
+
 /* Steps that bear what `borne` says, or none where no factor can be had. */
 static void make(RefTension *tension, const RefWarp *warp, RefSteps *steps)
 {
@@ -95,16 +119,15 @@ static void make(RefTension *tension, const RefWarp *warp, RefSteps *steps)
 bool ref_tension_bear(RefTension *tension, const RefWarp *warp, const RefShellOptions *shell,
                       RefSteps *steps)
 {
-    long places = PLACES * warp->cells;
-    tension->slack = tension->matters ? 0 : tension->slack + 1;
-    if (tension->slack > SLACK && steps->taut) {
+    bool slack = steps->taut && (!tension->matters || bears_too_much(tension, warp));
+    tension->slack = slack ? tension->slack + 1 : 0;
+    if (tension->slack > SLACK && !tension->matters) {
         ref_tension_drop(tension, steps);
         return true;
     }
-    if (!tension->matters || !matters(tension, tension->borne, warp, shell, steps)) return false;
-    if (!tension->borne) tension->borne = sm_alloc((size_t)places, sizeof *tension->borne);
-    for (long at = 0; at < places; at++)
-        tension->borne[at] = fmax(2 * tension->now[at], tension->borne[at] / 2);
+    bool lacks = tension->matters && matters(tension, tension->borne, warp, shell, steps);
+    if (tension->slack <= SLACK && !lacks) return false;
+    set_borne(tension, warp);
     make(tension, warp, steps);
     return true;
 }

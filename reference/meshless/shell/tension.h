@@ -13,7 +13,7 @@
  * holds beyond a piece's first need: where this rises suddenly, by tens of a strip's weight within
  * a step, the step or the next may gain energy, and the ones after them do not. G is of twice the
  * tension that it is made for, so that steps are seldom factorised anew: where tension has doubled
- * somewhere, and where for 100 steps none was needed. */
+ * somewhere, and where for 10 steps there was next to none of what they bear. */
 #ifndef REF_TENSION_H
 #define REF_TENSION_H
 
@@ -23,7 +23,7 @@
 typedef struct {
     double *now, *borne; /* [4 cells] T', and for what steps were made last; or NULL */
     bool matters;        /* now, to steps that bear none */
-    int slack;           /* steps since it did */
+    int slack;           /* for so many steps they have borne far more than there is */
     double stretch;      /* the largest of the surface since it was made, where forces were found */
 } RefTension;
 
