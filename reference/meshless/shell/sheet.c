@@ -528,8 +528,7 @@ static void bear_tension(RefSheet *sheet)
         sheet->judged = need;
         sheet->changed = false;
     }
-    if (ref_tension_bear(&sheet->tension, &sheet->warp, &sheet->options.shell, &sheet->steps))
-        find_all_slopes(sheet);
+    if (ref_tension_bear(&sheet->tension, &sheet->warp, &sheet->steps)) find_all_slopes(sheet);
 }
 
 void ref_sheet_step(RefSheet *sheet)

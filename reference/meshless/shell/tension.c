@@ -72,6 +72,16 @@ static bool matters(const RefTension *tension, const double *borne, const RefWar
     return room > 1;
 }
 
+static bool bears_too_much(const RefTension *tension, const RefWarp *warp)
+{
+    double now = 0, borne = 0;
+    for (long at = 0; at < PLACES * warp->cells; at++) {
+        now += warp->place[at].area * tension->now[at];
+        borne += warp->place[at].area * tension->borne[at];
+    }
+    return borne > TOO_MUCH * now;
+}
+
 void ref_tension_free(RefTension *tension)
 {
     sm_free_all(tension->now, tension->borne);
@@ -85,16 +95,8 @@ void ref_tension_find(RefTension *tension, const RefWarp *warp, const RefShellOp
     if (!tension->now) tension->now = sm_alloc(places, sizeof *tension->now);
     tension->stretch = fmax(tension->stretch, find(warp, tension->now));
     tension->matters = matters(tension, NULL, warp, shell, steps);
-}
-
-static bool bears_too_much(const RefTension *tension, const RefWarp *warp)
-{
-    double now = 0, borne = 0;
-    for (long at = 0; at < PLACES * warp->cells; at++) {
-        now += warp->place[at].area * tension->now[at];
-        borne += warp->place[at].area * tension->borne[at];
-    }
-    return borne > TOO_MUCH * now;
+    tension->lacks = tension->matters && matters(tension, tension->borne, warp, shell, steps);
+    tension->idle = tension->borne && (!tension->matters || bears_too_much(tension, warp));
 }
 
 /* Twice what there is; and where that comes and goes from place to place, half of what was. */
@@ -105,6 +107,7 @@ static void set_borne(RefTension *tension, const RefWarp *warp)
     if (!tension->borne) tension->borne = sm_alloc(places, sizeof *tension->borne);
     for (size_t at = 0; at < places; at++)
         tension->borne[at] = fmax(2 * tension->now[at], kept * tension->borne[at]);
+    tension->lacks = tension->idle = false;
     tension->slack = 0;
 }
 
@@ -116,17 +119,14 @@ static void make(RefTension *tension, const RefWarp *warp, RefSteps *steps)
     if (ref_steps_bear(steps, &G, NULL) != SM_OK) ref_tension_drop(tension, steps);
 }
 
-bool ref_tension_bear(RefTension *tension, const RefWarp *warp, const RefShellOptions *shell,
-                      RefSteps *steps)
+bool ref_tension_bear(RefTension *tension, const RefWarp *warp, RefSteps *steps)
 {
-    bool slack = steps->taut && (!tension->matters || bears_too_much(tension, warp));
-    tension->slack = slack ? tension->slack + 1 : 0;
+    tension->slack = tension->idle ? tension->slack + 1 : 0;
     if (tension->slack > SLACK && !tension->matters) {
         ref_tension_drop(tension, steps);
         return true;
     }
-    bool lacks = tension->matters && matters(tension, tension->borne, warp, shell, steps);
-    if (tension->slack <= SLACK && !lacks) return false;
+    if (tension->slack <= SLACK && !tension->lacks) return false;
     set_borne(tension, warp);
     make(tension, warp, steps);
     return true;
@@ -136,7 +136,7 @@ void ref_tension_set(RefTension *tension, const double *borne, const RefWarp *wa
 {
     size_t places = PLACES * (size_t)warp->cells, none = 0;
     while (none < places && borne[none] == 0) none++;
-    tension->matters = false;
+    tension->matters = tension->lacks = tension->idle = false;
     tension->slack = 0;
     if (none == places)
         ref_tension_drop(tension, steps);

@@ -22,8 +22,9 @@
 
 typedef struct {
     double *now, *borne; /* [4 cells] T', and for what steps were made last; or NULL */
-    bool matters;        /* now, to steps that bear none */
-    int slack;           /* for so many steps they have borne far more than there is */
+    bool matters;        /* to steps that bear none; */
+    bool lacks, idle;    /* these bear too little, or far more than there is: */
+    int slack;           /* since so many steps */
     double stretch;      /* the largest of the surface since it was made, where forces were found */
 } RefTension;
 
@@ -34,8 +35,7 @@ void ref_tension_find(RefTension *tension, const RefWarp *warp, const RefShellOp
                       const RefSteps *steps);
 
 /* Before a step: has it bear what was found last. Returns whether steps were factorised anew. */
-bool ref_tension_bear(RefTension *tension, const RefWarp *warp, const RefShellOptions *shell,
-                      RefSteps *steps);
+bool ref_tension_bear(RefTension *tension, const RefWarp *warp, RefSteps *steps);
 
 /* Has steps bear so much from now on, [4 cells], that once was `borne`: bit by bit as then. */
 void ref_tension_set(RefTension *tension, const double *borne, const RefWarp *warp,
