@@ -539,6 +539,20 @@ TEST(a_shell_bears_any_wind)
     assert_non_null(strstr(result.out, "\nforces stretched parts of it to "));
 }
 
+/* What most people have as a shell: a cloth that lies on y = 0. */
+TEST(a_mesh_that_lies_flat_is_held_at_one_end)
+{
+    needs_solver();
+    Result result;
+    FILE *file = fopen(path_in("cloth.obj"), "w");
+    for (int n = 0; n < 81; n++) fprintf(file, "v %d 0 %g\n", n % 9, n / 9 * 0.5);
+    for (int n = 0; n < 72; n++)
+        if (n % 9 < 8) fprintf(file, "f %d %d %d %d\n", n + 1, n + 2, n + 11, n + 10);
+    fclose(file);
+    run("run cloth.obj --engine shell --nodes 60 --frames 2 --no-output", &result);
+    assert_int_equal(result.code, 0);
+}
+
 TEST(a_full_disk_is_an_error)
 {
     char command[512];

@@ -67,11 +67,15 @@ SmCode bench_mesh_of_scene(const BenchScene *scene, const char *substitute, SmMe
     return code;
 }
 
+static bool lies_flat(const SmBox *box)
+{
+    return box->high[1] - box->low[1] <= 0.01 * sm_box_longest(box);
+}
+
 /* What stands for a body's height: of one that lies flat, its length. */
 static double height_of(const SmBox *box)
 {
-    double extent = sm_box_longest(box), height = box->high[1] - box->low[1];
-    return height > 0.01 * extent ? height : extent;
+    return lies_flat(box) ? sm_box_longest(box) : box->high[1] - box->low[1];
 }
 
 void bench_mesh_name(const char *path, char name[BENCH_NAME])
@@ -104,11 +108,14 @@ void bench_scene_drop(const SmMesh *mesh, const char *path, BenchScene *scene)
 void bench_scene_hold(const SmMesh *mesh, BenchScene *scene)
 {
     SmBox box = box_of(mesh);
+    bool flat = lies_flat(&box), wide = box.high[0] - box.low[0] >= box.high[2] - box.low[2];
     scene->metre = height_of(&box);
-    snprintf(scene->title, sizeof scene->title, "%s held at its foot", scene->name);
+    snprintf(scene->title, sizeof scene->title, "%s held at %s", scene->name,
+             flat ? "one end" : "its foot");
     scene->obstacle_count = 0;
     scene->handle_count = 1;
-    scene->handle[0] = (BenchHandle){.select = {.high = {1, 0.1, 1}}};
+    scene->handle[0] = (BenchHandle){.select = {.high = {1, 1, 1}}};
+    scene->handle[0].select.high[flat ? wide ? 0 : 2 : 1] = 0.1;
 }
 
 void bench_scene_sample(const SmMesh *mesh, BenchScene *scene)

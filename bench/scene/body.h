@@ -48,8 +48,8 @@ void bench_scene_drop(const SmMesh *mesh, const char *path, BenchScene *scene);
  * octree's own defaults. */
 void bench_scene_sample(const SmMesh *mesh, BenchScene *scene);
 
-/* Makes it the meshless engine's: held at its lowest tenth, gravity as before, no ground; the mesh
- * is taken to be 1 m high. */
+/* Makes it one of the meshless engines': held at its lowest tenth, a mesh that lies flat at one
+ * end; gravity as before, no ground; the mesh is taken to be 1 m high, or as long. */
 void bench_scene_hold(const SmMesh *mesh, BenchScene *scene);
 
 /* Voxelises, and fills in the rest. Takes `mesh` over, also when it fails. Errors as sm_voxelise(),
