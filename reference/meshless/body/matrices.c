@@ -115,22 +115,23 @@ static bool reaches(const RefNodes *nodes, int n, const double low[3], const dou
 static void find_nodes(const RefOctants *tree, const RefOctant *octant, const RefNodes *nodes,
                        Local *local)
 {
-    double low[3], high[3], x[3];
+    double low[3], high[3], x[3], edge = ldexp(nodes->edge, -nodes->depth);
     long first[3], last[3];
     for (int d = 0; d < 3; d++) {
         low[d] = tree->origin[d] + tree->cell * octant->corner[d];
         high[d] = low[d] + tree->cell * octant->size;
-        first[d] = (long)fmax(floor((low[d] - nodes->low[d]) / nodes->bin), 0);
-        last[d] = (long)fmin(floor((high[d] - nodes->low[d]) / nodes->bin), nodes->size[d] - 1);
+        first[d] = (long)fmax(floor((low[d] - nodes->low[d]) / edge), 0);
+        last[d] = (long)fmin(floor((high[d] - nodes->low[d]) / edge),
+                             ldexp(nodes->size[d], nodes->depth) - 1);
     }
     local->count = 0;
     for (long k = first[2]; k <= last[2]; k++)
         for (long j = first[1]; j <= last[1]; j++)
             for (long i = first[0]; i <= last[0]; i++) {
                 int near;
-                x[0] = nodes->low[0] + ((double)i + 0.5) * nodes->bin;
-                x[1] = nodes->low[1] + ((double)j + 0.5) * nodes->bin;
-                x[2] = nodes->low[2] + ((double)k + 0.5) * nodes->bin;
+                x[0] = nodes->low[0] + ((double)i + 0.5) * edge;
+                x[1] = nodes->low[1] + ((double)j + 0.5) * edge;
+                x[2] = nodes->low[2] + ((double)k + 0.5) * edge;
                 const int *member = ref_nodes_near(nodes, x, &near);
                 for (int n = 0; n < near; n++)
                     if (local->number[member[n]] < 0 && reaches(nodes, member[n], low, high)) {

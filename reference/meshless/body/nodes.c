@@ -5,51 +5,111 @@
 #include <string.h>
 
 static const double least_share = 1.0 / 64, least_distance = 0.25;
-enum { MOST_BINS = 1 << 21 };
+/* Bins of more members than FULL are halved, until they are a third of the smallest reach or
+ * DEEPEST times; before that they are SHARE a node. */
+enum { SHARE = 16, FULL = 24, DEEPEST = 24 };
 
 void ref_nodes_free(RefNodes *nodes)
 {
-    sm_free_all(nodes->position, nodes->reach, nodes->owner, nodes->start, nodes->member,
-                nodes->home, nodes->dimmed);
+    sm_free_all(nodes->position, nodes->reach, nodes->owner, nodes->bin, nodes->member, nodes->home,
+                nodes->dimmed);
     *nodes = (RefNodes){0};
 }
 
-/* Bins that the cover of node n touches, low and high. A plane is one bin thick. */
-static void touched(const RefNodes *nodes, long n, int low[3], int high[3])
+/* Bins halved so often that the cover of node n touches, low and high. A plane is one bin thick. */
+static void touched(const RefNodes *nodes, long n, int halved, double low[3], double high[3])
 {
+    double times = ldexp(1, halved);
     low[2] = high[2] = 0;
     for (int d = 0; d < (nodes->plane ? 2 : 3); d++) {
         double at = nodes->position[n][d] - nodes->low[d];
-        low[d] = (int)fmax(floor((at - nodes->reach[n]) / nodes->bin), 0);
-        high[d] = (int)fmin(floor((at + nodes->reach[n]) / nodes->bin), nodes->size[d] - 1);
+        low[d] = floor(times * ((at - nodes->reach[n]) / nodes->edge));
+        high[d] = floor(times * ((at + nodes->reach[n]) / nodes->edge));
     }
 }
 
 /* Calls for every bin that node n touches: counts it, or notes n there. */
 static void enter(RefNodes *nodes, long n, bool count)
 {
-    int low[3], high[3];
-    touched(nodes, n, low, high);
-    for (int z = low[2]; z <= high[2]; z++)
-        for (int y = low[1]; y <= high[1]; y++)
-            for (int x = low[0]; x <= high[0]; x++) {
-                long bin = ((long)z * nodes->size[1] + y) * nodes->size[0] + x;
-                if (count)
-                    nodes->start[bin + 1]++;
-                else
-                    nodes->member[nodes->start[bin]++] = (int)n;
+    double low[3], high[3];
+    touched(nodes, n, 0, low, high);
+    for (int d = 0; d < 3; d++) {
+        low[d] = fmax(low[d], 0);
+        high[d] = fmin(high[d], nodes->size[d] - 1);
+    }
+    for (int z = (int)low[2]; z <= (int)high[2]; z++)
+        for (int y = (int)low[1]; y <= (int)high[1]; y++)
+            for (int x = (int)low[0]; x <= (int)high[0]; x++) {
+                RefNodesBin *bin = nodes->bin + ((long)z * nodes->size[1] + y) * nodes->size[0] + x;
+                if (!count) nodes->member[bin->first + bin->count] = (int)n;
+                bin->count++;
             }
 }
 
-/* Bins of a third of the smallest reach, or larger ones if those are too many. */
+/* What halves bins: room for more of them and for their members. */
+typedef struct {
+    RefNodes *nodes;
+    long bins, members, bin_room, member_room;
+} Halving;
+
+static void note_members(Halving *h, long bin, int count, const int *member)
+{
+    RefNodes *nodes = h->nodes;
+    sm_make_room(nodes->member, h->member_room, h->members + count);
+    memcpy(nodes->member + h->members, member, (size_t)count * sizeof *member);
+    nodes->bin[bin] = (RefNodesBin){.count = count, .first = h->members};
+    h->members += count;
+    if (count > nodes->most) nodes->most = count;
+}
+
+static bool is_coarse(const RefNodes *nodes, int halved, int count, const int *member)
+{
+    double third = INFINITY;
+    for (int m = 0; m < count; m++) third = fmin(third, nodes->reach[member[m]] / 3);
+    return count > FULL && halved < nodes->depth && ldexp(nodes->edge, -halved) > 1.01 * third;
+}
+
+/* Of a bin at `place` in edges of its own, and its members. */
+static void settle(Halving *h, long bin, int halved, const double place[3], int count,
+                   const int *member)
+{
+    RefNodes *nodes = h->nodes;
+    int parts = nodes->plane ? 4 : 8;
+    if (!is_coarse(nodes, halved, count, member)) {
+        note_members(h, bin, count, member);
+        return;
+    }
+    long first = h->bins;
+    int *touching = sm_alloc((size_t)count, sizeof *touching);
+    h->bins += parts;
+    sm_make_room(nodes->bin, h->bin_room, h->bins);
+    nodes->bin[bin].child = (int)first;
+    for (int part = 0; part < parts; part++) {
+        double at[3], low[3], high[3];
+        int touch = 0;
+        for (int d = 0; d < 3; d++) at[d] = 2 * place[d] + (part >> d & 1);
+        for (int m = 0; m < count; m++) {
+            bool inside = true;
+            touched(nodes, member[m], halved + 1, low, high);
+            for (int d = 0; d < (nodes->plane ? 2 : 3); d++)
+                inside &= low[d] <= at[d] && at[d] <= high[d];
+            if (inside) touching[touch++] = member[m];
+        }
+        settle(h, first + part, halved + 1, at, touch, touching);
+    }
+    free(touching);
+}
+
+/* Bins of a third of the smallest reach, or so many times twice that as SHARE says. */
 static long lay_out(RefNodes *nodes)
 {
+    long entries = nodes->count + nodes->images, all = 1;
     double high[3], least = INFINITY, bins = INFINITY;
     for (int d = 0; d < 3; d++) {
         nodes->low[d] = INFINITY;
         high[d] = -INFINITY;
     }
-    for (long n = 0; n < nodes->count + nodes->images; n++) {
+    for (long n = 0; n < entries; n++) {
         for (int d = 0; d < 3; d++) {
             nodes->low[d] = fmin(nodes->low[d], nodes->position[n][d] - nodes->reach[n]);
             high[d] = fmax(high[d], nodes->position[n][d] + nodes->reach[n]);
@@ -57,19 +117,20 @@ static long lay_out(RefNodes *nodes)
         least = fmin(least, nodes->reach[n]);
     }
     int dims = nodes->plane ? 2 : 3;
-    for (nodes->bin = least / 3; bins > MOST_BINS; nodes->bin *= 1.1) {
+    for (nodes->depth = -1; bins > SHARE * ((double)entries + 4); nodes->depth++) {
         bins = 1;
-        for (int d = 0; d < dims; d++) bins *= ceil((high[d] - nodes->low[d]) / (1.1 * nodes->bin));
+        nodes->edge = ldexp(least / 3, nodes->depth + 1);
+        for (int d = 0; d < dims; d++) bins *= ceil((high[d] - nodes->low[d]) / nodes->edge);
     }
-    long all = 1;
     if (nodes->plane) {
-        nodes->low[2] = -nodes->bin / 2;
+        nodes->low[2] = -nodes->edge / 2;
         nodes->size[2] = 1;
     }
     for (int d = 0; d < dims; d++) {
-        nodes->size[d] = (int)ceil((high[d] - nodes->low[d]) / nodes->bin);
+        nodes->size[d] = (int)ceil((high[d] - nodes->low[d]) / nodes->edge);
         all *= nodes->size[d];
     }
+    if (nodes->depth > DEEPEST) nodes->depth = DEEPEST;
     return all;
 }
 
@@ -145,27 +206,43 @@ static void place_images(RefNodes *nodes)
     ref_cylinder_images_free(&images);
 }
 
+/* Members of bins that nothing has halved yet. */
+static void fill(RefNodes *nodes, long bins)
+{
+    long entries = nodes->count + nodes->images, all = 0;
+    for (long n = 0; n < entries; n++) enter(nodes, n, true);
+    for (long b = 0; b < bins; b++) {
+        nodes->bin[b].first = all;
+        all += nodes->bin[b].count;
+        nodes->bin[b].count = 0;
+    }
+    nodes->member = sm_alloc((size_t)all, sizeof *nodes->member);
+    for (long n = 0; n < entries; n++) enter(nodes, n, false);
+}
+
 void ref_nodes_bin(RefNodes *nodes)
 {
-    free(nodes->start);
-    free(nodes->member);
-    nodes->start = NULL;
+    sm_free_all(nodes->bin, nodes->member);
+    nodes->bin = NULL;
     nodes->member = NULL;
     nodes->most = 0;
     nodes->images = 0;
     if (nodes->count == 0) return;
     place_images(nodes);
-    long bins = lay_out(nodes), entries = nodes->count + nodes->images;
-    nodes->start = sm_alloc((size_t)bins + 2, sizeof *nodes->start);
-    for (long n = 0; n < entries; n++) enter(nodes, n, true);
+    long bins = lay_out(nodes);
+    nodes->bin = sm_alloc((size_t)bins, sizeof *nodes->bin);
+    fill(nodes, bins);
+    Halving halving = {.nodes = nodes, .bins = bins, .bin_room = bins};
+    int *coarse = nodes->member;
+    nodes->member = NULL;
     for (long b = 0; b < bins; b++) {
-        if (nodes->start[b + 1] > nodes->most) nodes->most = (int)nodes->start[b + 1];
-        nodes->start[b + 1] += nodes->start[b];
+        RefNodesBin bin = nodes->bin[b];
+        long rest = b / nodes->size[0];
+        double place[3] = {(double)(b % nodes->size[0]), (double)(rest % nodes->size[1]),
+                           (double)(rest / nodes->size[1])};
+        settle(&halving, b, 0, place, bin.count, coarse + bin.first);
     }
-    nodes->member = sm_alloc((size_t)nodes->start[bins], sizeof *nodes->member);
-    for (long n = 0; n < entries; n++) enter(nodes, n, false);
-    memmove(nodes->start + 1, nodes->start, (size_t)bins * sizeof *nodes->start);
-    nodes->start[0] = 0;
+    free(coarse);
 }
 
 /* Whether a node stands within `distance` of x. */
@@ -219,7 +296,7 @@ RefNodes ref_nodes_copy(const RefNodes *nodes)
     copy.owner = NULL;
     copy.home = NULL;
     copy.dimmed = NULL;
-    copy.start = NULL;
+    copy.bin = NULL;
     copy.member = NULL;
     ref_nodes_bin(&copy);
     return copy;

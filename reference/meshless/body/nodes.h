@@ -1,10 +1,11 @@
 /* nodes.h - a meshless body's nodes and their covers (meshless sections 4.1.1 and 4.2).
  *
  * A node's cover is the open cube of half-edge `reach` around it (less a billionth
- * of that: mls.c). Bins over the box of all covers
- * say which nodes may cover a point without a search. A shell's nodes stand in the plane of its
- * parameters, with a third coordinate of 0, and their covers are squares, which go on across seams:
- * where one does, an image of the node stands beyond the seam. */
+ * of that: mls.c). Bins over the box of all covers say which nodes may cover a point; they are
+ * halved where covers are small, as a shell's on its limbs are a thousandth of those beside. A
+ * shell's nodes stand in the plane of its parameters, with a third coordinate of 0, and their
+ * covers are squares, which go on across seams: where one does, an image of the node stands beyond
+ * the seam. */
 #ifndef REF_NODES_H
 #define REF_NODES_H
 
@@ -33,6 +34,13 @@ typedef struct {
     const void *cracks;
 } RefCut;
 
+/* A square or cube, or its quarters or eighths, which follow each other from `child` on. */
+typedef struct {
+    int child; /* 0: it is whole */
+    int count; /* nodes and images whose covers touch it: member[first] and so on, rising */
+    long first;
+} RefNodesBin;
+
 typedef struct {
     long count;
     double (*position)[3]; /* [count + images] */
@@ -45,13 +53,14 @@ typedef struct {
     const RefSeam *seam; /* [seams] the caller's, as long as reaches change */
     /* Of a plane of cylinders, the caller's: images stand where these say; NULL: no such plane. */
     const RefCylinders *cylinders;
-    int *home;          /* [count + images] in whose plane each stands, */
-    bool *dimmed;       /* [count + images] and whether zeros may be between it and a place */
-    double low[3], bin; /* the bins' corner and edge */
-    int size[3];        /* bins a direction */
-    long *start;        /* [bins + 1] */
-    int *member;        /* [start[bins]] nodes and images whose covers touch the bin, rising */
-    int most;           /* members of the fullest bin */
+    int *home;           /* [count + images] in whose plane each stands, */
+    bool *dimmed;        /* [count + images] and whether zeros may be between it and a place */
+    double low[3], edge; /* the bins' corner and edge, */
+    int size[3];         /* bins a direction, the first ones of */
+    RefNodesBin *bin;
+    int depth;   /* how often bins are halved where covers are smallest */
+    int *member; /* what they say */
+    int most;    /* members of the fullest bin */
 } RefNodes;
 
 /* A node at the centre of every octant that is inside or cut; those whose centre is outside move
@@ -67,21 +76,31 @@ void ref_nodes_free(RefNodes *nodes);
 /* A copy with bins of its own, which the caller frees. */
 RefNodes ref_nodes_copy(const RefNodes *nodes);
 
-/* Makes images and bins anew after reaches have changed. */
+/* Makes images and bins anew after reaches have changed. O((nodes + images) depth). */
 void ref_nodes_bin(RefNodes *nodes);
 
-/* The nodes and images that may cover x: `count` of them. NULL where there are none. O(1). */
+/* The nodes and images that may cover x: `count` of them. NULL where there are none. O(depth). */
 static inline const int *ref_nodes_near(const RefNodes *nodes, const double x[3], int *count)
 {
-    long bin = 0;
+    long at = 0;
+    double place[3];
     *count = 0;
     for (int d = 2; d >= 0; d--) {
-        double place = (x[d] - nodes->low[d]) / nodes->bin;
-        if (!(place >= 0 && place < nodes->size[d])) return NULL;
-        bin = bin * nodes->size[d] + (int)place;
+        place[d] = (x[d] - nodes->low[d]) / nodes->edge;
+        if (!(place[d] >= 0 && place[d] < nodes->size[d])) return NULL;
+        at = at * nodes->size[d] + (int)place[d];
     }
-    *count = (int)(nodes->start[bin + 1] - nodes->start[bin]);
-    return nodes->member + nodes->start[bin];
+    const RefNodesBin *bin = nodes->bin + at;
+    while (bin->child) {
+        int part = 0;
+        for (int d = 0; d < (nodes->plane ? 2 : 3); d++) {
+            place[d] = 2 * (place[d] - (int)place[d]);
+            part += (int)place[d] << d;
+        }
+        bin = nodes->bin + bin->child + part;
+    }
+    *count = bin->count;
+    return nodes->member + bin->first;
 }
 
 #endif

@@ -37,6 +37,41 @@ static RefNodes shaken(int side, double shake, double alpha)
     return nodes;
 }
 
+/* Covers of which the smallest are a millionth of the largest, close together: bins know all that
+ * covers a place, in order, and are neither many nor full. */
+TEST(bins_are_halved_where_covers_are_small)
+{
+    enum { NODES = 500, PLACES = 20000 };
+    for (int plane = 0; plane < 2; plane++) {
+        RefNodes nodes = {.count = NODES, .plane = plane};
+        nodes.position = sm_alloc(NODES, sizeof *nodes.position);
+        nodes.reach = sm_alloc(NODES, sizeof *nodes.reach);
+        for (long n = 0; n < NODES; n++) {
+            double far = pow(10, random_between(&seed, -6, 0));
+            for (int d = 0; d < 3 - plane; d++)
+                nodes.position[n][d] = 0.3 + far * random_between(&seed, -1, 1);
+            nodes.reach[n] = far * random_between(&seed, 0.2, 0.4);
+        }
+        ref_nodes_bin(&nodes);
+        assert_true(nodes.most < NODES / 2);
+        for (int p = 0; p < PLACES; p++) {
+            double far = pow(10, random_between(&seed, -7, 0)), x[3] = {0};
+            for (int d = 0; d < 3 - plane; d++) x[d] = 0.3 + far * random_between(&seed, -1, 1);
+            int count, at = 0;
+            const int *member = ref_nodes_near(&nodes, x, &count);
+            for (int m = 1; m < count; m++) assert_true(member[m - 1] < member[m]);
+            for (int n = 0; n < NODES; n++) {
+                bool covers = true;
+                for (int d = 0; d < 3; d++)
+                    covers &= fabs(nodes.position[n][d] - x[d]) < nodes.reach[n];
+                while (at < count && member[at] < n) at++;
+                assert_true(!covers || (at < count && member[at] == n));
+            }
+        }
+        ref_nodes_free(&nodes);
+    }
+}
+
 /* Monomial `term` of degree up to 2 (1, x, y, z, xx, xy, ...) and its gradient. */
 static double monomial(int term, const double x[3], double gradient[3])
 {
