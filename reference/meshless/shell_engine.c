@@ -113,7 +113,7 @@ static SmCode make_press(SmEngine *engine, SmError *error)
     if (code != SM_OK) return code;
     engine->press = sm_alloc((size_t)shell->nodes.count, sizeof *engine->press);
     ref_middle_areas(CONST(shell->X), &samples);
-    ref_middle_press(CONST(shell->X), &samples, 1, engine->press);
+    ref_middle_press(&samples, 1, engine->press);
     ref_samples_free(&samples);
     return SM_OK;
 }

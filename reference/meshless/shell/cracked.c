@@ -108,9 +108,9 @@ static void take_samples(const RefCracked *cracked, long c, RefSamplesWork *take
 
 static void integrate(RefCracked *cracked, RefCrackedCell *cell, RefThinWork *work)
 {
-    cell->soft = ref_thin_element((const double(*)[3])cracked->shell->X, &cell->samples, 0,
-                                  cracked->options.thickness, &cracked->options.material, work,
-                                  &cell->element);
+    ref_middle_frames((const double(*)[3])cracked->shell->X, &cell->samples);
+    cell->soft = ref_thin_element(&cell->samples, 0, cracked->options.thickness,
+                                  &cracked->options.material, work, &cell->element);
     cell->made = true;
 }
 
@@ -211,8 +211,7 @@ int ref_cracked_node(const RefCracked *cracked, const double theta[2])
 void ref_cracked_press(const RefCracked *cracked, double pressure, double (*force)[3])
 {
     for (long c = 0; c < cracked->shell->tree.count; c++)
-        ref_middle_press((const double(*)[3])cracked->shell->X, &cracked->cell[c].samples, pressure,
-                         force);
+        ref_middle_press(&cracked->cell[c].samples, pressure, force);
 }
 
 bool ref_cracked_again(const RefCracked *cracked, long cell)

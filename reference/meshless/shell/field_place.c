@@ -4,16 +4,11 @@
 
 #include "../motion/frame_sums.h"
 
-RefFieldPlace ref_field_sample(const RefSamples *samples, long p, const double (*X)[3])
+RefFieldPlace ref_field_sample(const RefSamples *samples, long p, const double (*u)[3])
 {
     long at = samples->start[p];
     return (RefFieldPlace){(int)(samples->start[p + 1] - at), samples->node + at,
-                           (const double(*)[6])samples->part + at, X, NULL};
-}
-
-RefFrame ref_field_frame(const RefFieldPlace *place)
-{
-    return ref_middle_at(place->X, place->count, place->node, place->part);
+                           (const double(*)[6])samples->part + at, u};
 }
 
 void ref_field_value(const RefFieldPlace *place, double value[3])

@@ -5,21 +5,17 @@
 
 #include "thin.h"
 
-/* The functions of one place: nodes and parts as RefSamples has them, and the parameters that the
- * middle surface and a field have, [nodes][3]. */
+/* The functions of one place: nodes and parts as RefSamples has them, and the parameters that a
+ * field has, [nodes][3]. */
 typedef struct {
     int count;
     const int *node;
     const double (*part)[6];
-    const double (*X)[3];
     const double (*u)[3];
 } RefFieldPlace;
 
-/* The functions of a sample, of no field yet. */
-RefFieldPlace ref_field_sample(const RefSamples *samples, long p, const double (*X)[3]);
-
-/* The middle surface at a place. */
-RefFrame ref_field_frame(const RefFieldPlace *place);
+/* Of a sample. */
+RefFieldPlace ref_field_sample(const RefSamples *samples, long p, const double (*u)[3]);
 
 /* A field's strains at a place (thin.h), whose surface the frame is. */
 void ref_field_strains(const RefFieldPlace *place, const RefFrame *frame, double strain[6]);

@@ -57,8 +57,7 @@ static RefFieldPlace place_before(const RefCracked *cracked, long cell, const do
     double edge = ref_quadtree_edge(&shell->tree, shell->tree.cell + cell);
     ref_samples_shape(&before->nodes, shell->basis, edge, theta, shape);
     for (int n = 0; n < shape->count; n++) ref_samples_part(shape, n, before->part[n]);
-    return (RefFieldPlace){shape->count, shape->node, (const double(*)[6])before->part,
-                           (const double(*)[3])before->X, NULL};
+    return (RefFieldPlace){shape->count, shape->node, (const double(*)[6])before->part, NULL};
 }
 
 /* The field there, and a quarter a split of what the parameters of the cell that was split were
@@ -85,31 +84,34 @@ void ref_fields_place(const RefCracked *cracked, const RefCrackedCell *cell, int
     }
 }
 
-/* What a sample of this area, and this trace before any crack, has; where the functions there are
- * not stiff, no strains. */
-static Seen see(RefFieldPlace place, const RefFrame *frame, bool stiff,
-                const RefShellOptions *options, const double *u, const double *v)
+/* What a sample has of displacements and velocities; where its functions are not stiff, no strains.
+ */
+static Seen see(const RefSamples *samples, long p, bool stiff, const RefShellOptions *options,
+                const double *u, const double *v)
 {
     Seen seen = {.velocity = {0}};
-    place.u = (const double(*)[3])u;
-    if (stiff) ref_field_root(&place, frame, options->thickness, &options->material, seen.root);
+    RefFieldPlace place = ref_field_sample(samples, p, (const double(*)[3])u);
+    if (stiff)
+        ref_field_root(&place, samples->frame + p, options->thickness, &options->material,
+                       seen.root);
     place.u = (const double(*)[3])v;
     ref_field_value(&place, seen.velocity);
     return seen;
 }
 
-static bool is_stiff(const RefSamples *samples, long p, const RefFrame *frame)
+/* Whether functions are, at sample p of `like`, whose areas and traces before any crack count. */
+static bool is_stiff(const RefSamples *samples, long p, const RefSamples *like)
 {
-    return ref_thin_is_stiff(frame, samples->area[p] / samples->weight[p], samples->trace[p]);
+    return samples->start[p] < samples->start[p + 1] &&
+           ref_thin_is_stiff(samples->frame + p, like->area[p] / like->weight[p], like->trace[p]);
 }
 
-/* What there was at sample p of `samples`, of functions that there were. */
-static Seen seen_before(const RefCracked *cracked, RefFieldPlace place, const RefSamples *samples,
-                        long p, const RefFieldsBefore *before)
+/* What there was at sample p, of functions that there were. */
+static Seen seen_before(const RefCracked *cracked, const RefSamples *samples, long p,
+                        const RefSamples *like, const RefFieldsBefore *before)
 {
-    RefFrame frame = ref_field_frame(&place);
-    bool stiff = place.count > 0 && is_stiff(samples, p, &frame);
-    return see(place, &frame, stiff, &cracked->options, *before->field[0], *before->field[1]);
+    return see(samples, p, is_stiff(samples, p, like), &cracked->options, *before->field[0],
+               *before->field[1]);
 }
 
 static void add_seen(const Seen *seen, double area, Sums *sums)
@@ -163,16 +165,15 @@ static Seen *see_parts(const RefCracked *cracked, RefFieldsBefore *before, Balan
         const RefSamples *old = before->samples + c;
         RefSamples had = {.count = 0};
         for (long p = 0; !cell->made && p < old->count; p++) {
-            RefFieldPlace place = ref_field_sample(old, p, (const double(*)[3])before->X);
-            Seen seen = seen_before(cracked, place, old, p, before);
+            Seen seen = seen_before(cracked, old, p, old, before);
             add_seen(&seen, old->area[p], &balance[c].was);
         }
         if (!is_new(cracked, before, c)) continue;
         double edge = ref_quadtree_edge(&shell->tree, shell->tree.cell + cell->from);
         ref_samples_of(&shell->tree, c, edge, &work, &had);
+        ref_middle_frames((const double(*)[3])before->X, &had);
         for (long p = 0; p < had.count; p++) {
-            RefFieldPlace place = ref_field_sample(&had, p, (const double(*)[3])before->X);
-            *next = seen_before(cracked, place, &cell->samples, p, before);
+            *next = seen_before(cracked, &had, p, &cell->samples, before);
             add_seen(next++, cell->samples.area[p], &balance[cell->from].is);
         }
         ref_samples_free(&had);
@@ -203,14 +204,13 @@ static void add_residual(const RefCracked *cracked, const RefSamples *samples, l
 {
     const RefShellOptions *options = &cracked->options;
     double area = samples->area[p], mass = options->material.density * options->thickness * area;
-    RefFieldPlace place = ref_field_sample(samples, p, (const double(*)[3])cracked->shell->X);
-    RefFrame frame = ref_field_frame(&place);
-    bool stiff = place.count > 0 && is_stiff(samples, p, &frame);
-    Seen left = see(place, &frame, stiff, options, fields->field[0], fields->field[1]);
+    RefFieldPlace place = ref_field_sample(samples, p, NULL);
+    bool stiff = is_stiff(samples, p, samples);
+    Seen left = see(samples, p, stiff, options, fields->field[0], fields->field[1]);
     for (int i = 0; i < 6; i++) left.root[i] = seen->root[i] - left.root[i];
     if (stiff)
-        ref_field_pull(&place, &frame, options->thickness, &options->material, left.root, area,
-                       (double(*)[3])fields->residual[0]);
+        ref_field_pull(&place, samples->frame + p, options->thickness, &options->material,
+                       left.root, area, (double(*)[3])fields->residual[0]);
     for (int n = 0; n < place.count; n++)
         for (int d = 0; d < 3; d++)
             fields->residual[1][3 * (long)place.node[n] + d] +=
@@ -228,10 +228,9 @@ void ref_fields_residuals(const RefCracked *cracked, RefFieldsBefore *before,
         for (long p = 0; cell->again && p < cell->samples.count; p++) {
             Seen seen;
             if (old->count && is_as_before(cracked, before, old, &cell->samples, p)) continue;
-            if (old->count) {
-                RefFieldPlace place = ref_field_sample(old, p, (const double(*)[3])before->X);
-                seen = seen_before(cracked, place, old, p, before);
-            } else
+            if (old->count)
+                seen = seen_before(cracked, old, p, old, before);
+            else
                 seen = adjusted(next++, balance + cell->from);
             add_residual(cracked, &cell->samples, p, &seen, fields);
         }

@@ -39,18 +39,17 @@ static RefFaceStress stress_at(const RefCracked *cracked, const RefSamples *samp
                                const double (*u)[3])
 {
     const RefShellOptions *options = &cracked->options;
-    RefFieldPlace place = ref_field_sample(samples, p, (const double(*)[3])cracked->shell->X);
-    place.u = u;
+    RefFieldPlace place = ref_field_sample(samples, p, u);
+    const RefFrame *frame = samples->frame + p;
     double strain[6], H[3][3], nu = options->material.poisson;
-    RefFrame frame = ref_field_frame(&place);
     RefFaceStress face[2] = {{.theta = {samples->theta[p][0], samples->theta[p][1]}}};
-    if (!ref_thin_is_stiff(&frame, samples->area[p] / samples->weight[p], samples->trace[p]))
+    if (!ref_thin_is_stiff(frame, samples->area[p] / samples->weight[p], samples->trace[p]))
         return face[0];
-    ref_field_strains(&place, &frame, strain);
-    ref_thin_law(frame.inverse, nu, H);
-    face[0].metric[0] = sm_dot(frame.tangent[0], frame.tangent[0]);
-    face[0].metric[1] = sm_dot(frame.tangent[1], frame.tangent[1]);
-    face[0].metric[2] = sm_dot(frame.tangent[0], frame.tangent[1]);
+    ref_field_strains(&place, frame, strain);
+    ref_thin_law(frame->inverse, nu, H);
+    face[0].metric[0] = sm_dot(frame->tangent[0], frame->tangent[0]);
+    face[0].metric[1] = sm_dot(frame->tangent[1], frame->tangent[1]);
+    face[0].metric[2] = sm_dot(frame->tangent[0], frame->tangent[1]);
     face[1] = face[0];
     for (int side = 0; side < 2; side++) {
         double far = (side ? -0.5 : 0.5) * options->thickness;

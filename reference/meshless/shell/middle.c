@@ -113,32 +113,35 @@ RefFrame ref_middle_of(const double (*X)[3], const RefShape *shape)
     return frame;
 }
 
-/* The surface at a sample. */
-static RefFrame frame_at(const double (*X)[3], const RefSamples *samples, long p)
-{
-    long from = samples->start[p];
-    return ref_middle_at(X, (int)(samples->start[p + 1] - from), samples->node + from,
-                         (const double(*)[6])(samples->part + from));
-}
-
-void ref_middle_press(const double (*X)[3], const RefSamples *samples, double pressure,
-                      double (*force)[3])
+void ref_middle_press(const RefSamples *samples, double pressure, double (*force)[3])
 {
     for (long p = 0; p < samples->count; p++) {
-        RefFrame frame = frame_at(X, samples, p);
+        const double *normal = samples->frame[p].normal;
         double push[3];
-        for (int d = 0; d < 3; d++) push[d] = pressure * samples->area[p] * frame.normal[d];
+        for (int d = 0; d < 3; d++) push[d] = pressure * samples->area[p] * normal[d];
         for (long e = samples->start[p]; e < samples->start[p + 1]; e++)
             for (int d = 0; d < 3; d++) force[samples->node[e]][d] += samples->part[e][0] * push[d];
     }
 }
 
+void ref_middle_frames(const double (*X)[3], RefSamples *samples)
+{
+    if (!samples->frame) samples->frame = sm_alloc((size_t)samples->count, sizeof(RefFrame));
+    for (long p = 0; p < samples->count; p++) {
+        long from = samples->start[p];
+        samples->frame[p] =
+            ref_middle_at(X, (int)(samples->start[p + 1] - from), samples->node + from,
+                          (const double(*)[6])(samples->part + from));
+    }
+}
+
 long ref_middle_areas(const double (*X)[3], RefSamples *samples)
 {
+    ref_middle_frames(X, samples);
     for (long p = 0; p < samples->count; p++) {
-        RefFrame frame = frame_at(X, samples, p);
-        samples->area[p] = frame.area * samples->weight[p];
-        samples->trace[p] = frame.inverse[0] + frame.inverse[1];
+        const RefFrame *frame = samples->frame + p;
+        samples->area[p] = frame->area * samples->weight[p];
+        samples->trace[p] = frame->inverse[0] + frame->inverse[1];
         if (!(samples->area[p] > 0)) return p;
     }
     return -1;

@@ -5,17 +5,6 @@
 
 #include "samples.h"
 
-/* The surface at a point. Pairs of indices are in the order 11, 22, 12. */
-typedef struct {
-    double x[3];
-    double tangent[2][3]; /* a_k = x,k */
-    double second[3][3];  /* x,kl */
-    double normal[3];     /* a3, of unit length */
-    double area;          /* |a1 x a2| */
-    double inverse[3];    /* g^kl of the metric g_kl = a_k . a_l */
-    double symbol[3][2];  /* Christoffel's C^n_kl, of n = 1 and 2 */
-} RefFrame;
-
 /* X that fit the chart's surface by least squares over the samples, each with its area on the
  * surface as the weight. One factorisation of [nodes]^2. The caller frees `X`, [nodes]. Errors:
  * SM_INPUT, functions that depend on one another; solver.h's. */
@@ -30,10 +19,12 @@ RefFrame ref_middle_of(const double (*X)[3], const RefShape *shape);
 /* Adds what a pressure along the normals does to the parameters: over the samples and areas that
  * the mass is of, so that it gives that no more energy than it would give to loose dust. O(samples
  * covers). */
-void ref_middle_press(const double (*X)[3], const RefSamples *samples, double pressure,
-                      double (*force)[3]);
+void ref_middle_press(const RefSamples *samples, double pressure, double (*force)[3]);
 
-/* Fills in the samples' areas and traces; returns the first without an area, or -1. */
+/* Fills in the samples' frames. */
+void ref_middle_frames(const double (*X)[3], RefSamples *samples);
+
+/* The same, and areas and traces; returns the first without an area, or -1. */
 long ref_middle_areas(const double (*X)[3], RefSamples *samples);
 
 #endif

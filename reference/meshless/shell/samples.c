@@ -17,7 +17,7 @@ _Static_assert((int)ALONG == (int)REF_GRID_SIDE && (int)ALONG == (int)REF_CELL_S
 void ref_samples_free(RefSamples *samples)
 {
     sm_free_all(samples->theta, samples->weight, samples->area, samples->trace, samples->start,
-                samples->node, samples->part);
+                samples->node, samples->part, samples->frame);
     *samples = (RefSamples){0};
 }
 

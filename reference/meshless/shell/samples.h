@@ -12,6 +12,17 @@
 /* Three by three in each of four parts of a cell. */
 enum { REF_SAMPLES_PER_CELL = 36 };
 
+/* The middle surface at a point. Pairs of indices are in the order 11, 22, 12. */
+typedef struct {
+    double x[3];
+    double tangent[2][3]; /* a_k = x,k */
+    double second[3][3];  /* x,kl */
+    double normal[3];     /* a3, of unit length */
+    double area;          /* |a1 x a2| */
+    double inverse[3];    /* g^kl of the metric g_kl = a_k . a_l */
+    double symbol[3][2];  /* Christoffel's C^n_kl, of n = 1 and 2 */
+} RefFrame;
+
 typedef struct {
     long count;         /* terminal cell by terminal cell */
     double (*theta)[3]; /* [count], with a third coordinate of 0 */
@@ -21,6 +32,7 @@ typedef struct {
     long *start;   /* [count + 1] */
     int *node;     /* [start[count]] as in RefShape */
     double (*part)[6]; /* [start[count]] phi, phi,1, phi,2, phi,11, phi,22, phi,12 */
+    RefFrame *frame;   /* [count] by ref_middle_frames(), or NULL */
 } RefSamples;
 
 /* What ref_samples_of() takes samples of, and works in. */

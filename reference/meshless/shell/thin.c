@@ -85,21 +85,21 @@ static void find_roots(const RefFrame *frame, const double weight[2], double poi
 
 /* Writes a sample's row of the mass, and behind those of others its rows of the stiffness, if it
  * has any. A node that is there twice has both its functions in its columns. */
-static void write_sample(const double (*X)[3], const RefSamples *samples, long p, double t,
-                         const RefMaterial *material, int nodes, double *shape, RefThinWork *work)
+static void write_sample(const RefSamples *samples, long p, double t, const RefMaterial *material,
+                         int nodes, double *shape, RefThinWork *work)
 {
     long from = samples->start[p], columns = ref_frame_columns(3 * nodes);
     int count = (int)(samples->start[p + 1] - from);
     double *strain = work->strain + 6 * work->stiff * columns;
     const int *node = samples->node + from;
     const double(*part)[6] = (const double(*)[6])(samples->part + from);
-    RefFrame frame = ref_middle_at(X, count, node, part);
+    const RefFrame *frame = samples->frame + p;
     double weight[2], root[6][6][3], area = samples->area[p], times = sqrt(area * t);
     ref_thin_weights(area, t, material, weight);
-    bool stiff = ref_thin_is_stiff(&frame, area / samples->weight[p], samples->trace[p]);
+    bool stiff = ref_thin_is_stiff(frame, area / samples->weight[p], samples->trace[p]);
     for (int e = 0; e < count; e++) shape[work->number[node[e]]] += times * part[e][0];
     if (!stiff) return;
-    find_roots(&frame, weight, material->poisson, root);
+    find_roots(frame, weight, material->poisson, root);
     memset(strain, 0, 6 * (size_t)columns * sizeof *strain);
     ref_frame_sums.root(count, node, work->number, part, (const double(*)[6][3])root, (int)columns,
                         strain);
@@ -157,7 +157,7 @@ static void make_rows(long columns, RefThinWork *work)
     work->square = sm_alloc((size_t)(columns * columns), sizeof *work->square);
 }
 
-int ref_thin_element(const double (*X)[3], const RefSamples *samples, long cell, double thickness,
+int ref_thin_element(const RefSamples *samples, long cell, double thickness,
                      const RefMaterial *material, RefThinWork *work, RefElement *element)
 {
     int count = ref_samples_nodes(samples, cell, work->node, work->number);
@@ -174,7 +174,7 @@ int ref_thin_element(const double (*X)[3], const RefSamples *samples, long cell,
     work->stiff = 0;
     memset(work->shape, 0, (size_t)(REF_SAMPLES_PER_CELL * narrow) * sizeof(double));
     for (int n = 0; n < REF_SAMPLES_PER_CELL; n++)
-        write_sample(X, samples, cell * REF_SAMPLES_PER_CELL + n, thickness, material, count,
+        write_sample(samples, cell * REF_SAMPLES_PER_CELL + n, thickness, material, count,
                      work->shape + n * narrow, work);
     square_rows(work, element);
     for (int n = 0; n < count; n++) work->number[element->node[n]] = -1;
@@ -195,14 +195,14 @@ static void add_element(const RefElement *element, RefPairs *pairs)
 }
 
 /* Returns how many samples have no stiffness. */
-static long integrate_all(const double (*X)[3], const RefSamples *samples, double thickness,
-                          const RefMaterial *material, RefPairs *pairs)
+static long integrate_all(const RefSamples *samples, double thickness, const RefMaterial *material,
+                          RefPairs *pairs)
 {
     RefThinWork work = ref_thin_work(pairs->count);
     RefElement element = {.count = 0};
     long soft = 0;
     for (long c = 0; c < samples->count / REF_SAMPLES_PER_CELL; c++) {
-        soft += ref_thin_element(X, samples, c, thickness, material, &work, &element);
+        soft += ref_thin_element(samples, c, thickness, material, &work, &element);
         add_element(&element, pairs);
     }
     ref_element_free(&element);
@@ -226,7 +226,7 @@ SmCode ref_thin_build(const double (*X)[3], RefSamples *samples, long nodes, dou
         code = sm_fail(error, SM_INPUT,
                        "the shell's middle surface has no area at the parameters (%g, %g)",
                        samples->theta[bad][0], samples->theta[bad][1]);
-    if (code == SM_OK) *soft = integrate_all(X, samples, thickness, material, &pairs);
+    if (code == SM_OK) *soft = integrate_all(samples, thickness, material, &pairs);
     if (code == SM_OK) ref_pairs_matrices(&pairs, material->density, matrices);
     ref_pairs_free(&pairs);
     return code;

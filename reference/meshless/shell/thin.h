@@ -40,11 +40,11 @@ RefThinWork ref_thin_work(long nodes);
 void ref_thin_work_free(RefThinWork *work);
 
 /* Sums over the samples of one cell, which is counted among the terminal ones that `samples` has,
- * of a shell of this thickness. Samples whose functions leave the surface there without an area
- * have mass alone, and those without functions nothing; returns how many both are. O(samples *
- * covers^2). What the element held before makes room: it is zeroed before it is
- * used first; the caller frees. */
-int ref_thin_element(const double (*X)[3], const RefSamples *samples, long cell, double thickness,
+ * with their frames, of a shell of this thickness. Samples whose functions leave the surface there
+ * without an area have mass alone, and those without functions nothing; returns how many both are.
+ * O(samples * covers^2). What the element held before makes room: it is zeroed before it is used
+ * first; the caller frees. */
+int ref_thin_element(const RefSamples *samples, long cell, double thickness,
                      const RefMaterial *material, RefThinWork *work, RefElement *element);
 void ref_element_free(RefElement *element);
 
