@@ -2,6 +2,7 @@
  * these loops. */
 #include "frame_sums.h"
 
+#include <stdbool.h>
 #include <string.h>
 
 #include "../../../lib/simd/real.h"
@@ -103,7 +104,7 @@ enum { WIDE = SM_VECTOR_BYTES / sizeof(double) };
 typedef double Wide __attribute__((vector_size(SM_VECTOR_BYTES), aligned(sizeof(double))));
 _Static_assert(REF_FRAME_SLOPES % WIDE == 0, "whole vectors");
 
-/* Parts side by side, four and two, and one parameter's entries of six rows. */
+/* Parts side by side, four and two. */
 typedef double Four __attribute__((vector_size(4 * sizeof(double)), aligned(sizeof(double))));
 typedef double Two __attribute__((vector_size(2 * sizeof(double)), aligned(sizeof(double))));
 
@@ -126,23 +127,39 @@ static void derive(int count, const int *node, const double (*part)[6], const do
     }
 }
 
-static void root(int count, const int *node, const int *place, const double (*part)[6],
-                 const double root[6][6][3], int columns, double *row)
+/* Parts 1 to 5 of all nodes, node by node. */
+static void gather_parts(int count, const int *node, const int *place, const double (*part)[6],
+                         int nodes, double *at)
 {
-    for (int n = 0; n < count; n++) {
-        Four four[4] = {{0}};
-        Two two = {0};
-        double at[6][3];
-        for (int m = 0; m < 6; m++) {
-            const double *from = root[m][0];
-            for (int k = 0; k < 4; k++) four[k] += *(const Four *)(from + 4 * k) * part[n][m];
-            two += *(const Two *)(from + 16) * part[n][m];
+    const int stride = ref_frame_columns(nodes);
+    memset(at, 0, 5 * (size_t)stride * sizeof *at);
+    for (int n = 0; n < count; n++)
+        for (int m = 0; m < 5; m++) at[m * stride + place[node[n]]] += part[n][1 + m];
+}
+
+/* What is written beyond the last node, nothing, is where what follows is written. */
+static void root(int count, const int *node, const int *place, const double (*part)[6],
+                 const RefFrameRoot *root, int nodes, double *work, double *row)
+{
+    const int stride = ref_frame_columns(nodes), columns = ref_frame_columns(3 * nodes);
+    double *bent = work + 5 * stride;
+    gather_parts(count, node, place, part, nodes, work);
+    for (int i = 0; i < 3; i++, row += columns)
+        for (int d = 0; d < 3; d++)
+            for (int n = 0; n < nodes; n += WIDE)
+                *(Wide *)(row + d * nodes + n) =
+                    root->membrane[i][0][d] * *(const Wide *)(work + n) +
+                    root->membrane[i][1][d] * *(const Wide *)(work + stride + n);
+    for (int i = 0; i < 3; i++, row += columns) {
+        for (int n = 0; n < nodes; n += WIDE) {
+            Wide sum = {0};
+            for (int m = 0; m < 5; m++)
+                sum += root->bending[i][m] * *(const Wide *)(work + m * stride + n);
+            *(Wide *)(bent + n) = sum;
         }
-        for (int k = 0; k < 4; k++) *(Four *)(at[0] + 4 * k) = four[k];
-        *(Two *)(at[0] + 16) = two;
-        double *to = row + 3 * place[node[n]];
-        for (int i = 0; i < 6; i++, to += columns)
-            for (int d = 0; d < 3; d++) to[d] += at[i][d];
+        for (int d = 0; d < 3; d++)
+            for (int n = 0; n < nodes; n += WIDE)
+                *(Wide *)(row + d * nodes + n) = root->normal[d] * *(const Wide *)(bent + n);
     }
 }
 
@@ -226,30 +243,38 @@ static void spread(int count, const int *node, const double (*slope)[REF_FRAME_S
     }
 }
 
-/* Sums that stay in registers: some rows of them, two vectors wide. */
+/* Sums that stay in registers: some rows of them, one or two vectors wide. */
 enum { HIGH = SM_VECTOR_BYTES < 64 ? 4 : 8 };
-_Static_assert(REF_FRAME_TILE % HIGH == 0 && REF_FRAME_TILE % (2 * WIDE) == 0, "whole blocks");
+_Static_assert(REF_FRAME_TILE % HIGH == 0 && REF_FRAME_TILE % WIDE == 0, "whole blocks");
 
-static void square_block(int rows, int columns, const double *left, const double *right,
-                         double *sum)
+static inline __attribute__((always_inline)) void square_block(int vectors, int rows, int columns,
+                                                               const double *left,
+                                                               const double *right, double *sum)
 {
     Wide at[HIGH][2] = {{{0}}};
-    for (int r = 0; r < rows; r++, left += columns, right += columns) {
-        const Wide first = *(const Wide *)right, second = *(const Wide *)(right + WIDE);
-        for (int i = 0; i < HIGH; i++) {
-            at[i][0] += first * left[i];
-            at[i][1] += second * left[i];
+    for (int r = 0; r < rows; r++, left += columns, right += columns)
+        for (int k = 0; k < vectors; k++) {
+            const Wide here = *(const Wide *)(right + k * WIDE);
+            for (int i = 0; i < HIGH; i++) at[i][k] += here * left[i];
         }
-    }
     for (int i = 0; i < HIGH; i++, sum += columns)
-        for (int k = 0; k < 2; k++) *(Wide *)(sum + k * WIDE) = at[i][k];
+        for (int k = 0; k < vectors; k++) *(Wide *)(sum + k * WIDE) = at[i][k];
 }
 
+/* Two vectors of columns, and where they meet the diagonal or the last column, one. */
 static void square(int rows, int columns, const double *row, double *sum)
 {
-    for (int j = 0; j < columns; j += 2 * WIDE) /* these columns stay near */
-        for (int i = 0; i < j + 2 * WIDE; i += HIGH)
-            square_block(rows, columns, row + i, row + j, sum + i * columns + j);
+    for (int j = 0, next; j < columns; j = next) { /* these columns stay near */
+        bool two = j + 2 * WIDE <= columns;
+        next = j + (two ? 2 : 1) * WIDE;
+        for (int i = 0; i < next; i += HIGH) {
+            if (two && i < j + WIDE)
+                square_block(2, rows, columns, row + i, row + j, sum + i * columns + j);
+            else
+                square_block(1, rows, columns, row + i, row + next - WIDE,
+                             sum + i * columns + next - WIDE);
+        }
+    }
 }
 
 const RefFrameSums SM_ISA_NAME(ref_frame_sums) = {apply, add,   place,  weigh,  derive,

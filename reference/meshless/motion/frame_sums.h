@@ -6,7 +6,14 @@
 
 #include "skin.h"
 
-enum { REF_FRAME_SLOPES = 8 /* of a shell's cell, at once */, REF_FRAME_TILE = 16 };
+enum { REF_FRAME_SLOPES = 8 /* of a shell's cell, at once */, REF_FRAME_TILE = 8 };
+
+/* What a shell's strains at a sample are, as rows whose squares are its energy: of membrane what
+ * slopes along both parameters are multiplied by, of bending what all parts but the value are,
+ * and that by the normal. */
+typedef struct {
+    double membrane[3][2][3], bending[3][5], normal[3];
+} RefFrameRoot;
 
 typedef struct {
     /* sum[r] = row[r] . z, of `rows` rows of `modes`. */
@@ -28,10 +35,11 @@ typedef struct {
     void (*derive)(int count, const int *node, const double (*part)[6], const double (*u)[3],
                    double sum[3][6]);
 
-    /* row[i][3 place[node[n]] + d] += sum over m of part[n][m] root[m][i][d], of six rows of
-     * `columns`. */
+    /* Six rows of ref_frame_columns(3 nodes), at d nodes + place[node[n]] along axis d; functions
+     * of the same node add up. What is in columns beyond is undefined, and so are as many behind
+     * the last row. `work`: six rows of ref_frame_columns(nodes). */
     void (*root)(int count, const int *node, const int *place, const double (*part)[6],
-                 const double root[6][6][3], int columns, double *row);
+                 const RefFrameRoot *root, int nodes, double *work, double *row);
 
     /* sum[m][l] = sum over the functions of part[n][m] field[node[n]][l], of eight fields. */
     void (*parts)(int count, const int *node, const double (*part)[6],

@@ -35,9 +35,9 @@ TEST(rows_are_applied_and_added)
 TEST(rows_are_squared)
 {
     unsigned seed = 2;
-    static double row[9][4 * REF_FRAME_TILE], sum[4 * REF_FRAME_TILE * 4 * REF_FRAME_TILE];
+    static double row[9][8 * REF_FRAME_TILE], sum[8 * REF_FRAME_TILE * 8 * REF_FRAME_TILE];
     for (int trial = 0; trial < TRIALS; trial++) {
-        int rows = 1 + random_int(&seed, 9), columns = REF_FRAME_TILE * (1 + random_int(&seed, 4));
+        int rows = 1 + random_int(&seed, 9), columns = REF_FRAME_TILE * (1 + random_int(&seed, 8));
         double *at = row[0];
         for (int i = 0; i < rows * columns; i++) at[i] = random_between(&seed, -1, 1);
         ref_frame_sums.square(rows, columns, at, sum);
@@ -50,39 +50,66 @@ TEST(rows_are_squared)
     }
 }
 
-/* Functions' parts, of which some are one node's: the sums of a field, and the rows of roots. */
-TEST(parts_are_summed_and_make_rows)
+/* Functions' parts, of which some are one node's, and a field. */
+enum { PARTED = 5, FUNCTIONS = 9 };
+
+static int make_parts(unsigned *seed, int node[FUNCTIONS], double part[FUNCTIONS][6])
 {
-    enum { NODES = 5, FUNCTIONS = 9, COLUMNS = REF_FRAME_TILE };
+    int count = random_int(seed, FUNCTIONS + 1);
+    for (int n = 0; n < count; n++) {
+        node[n] = random_int(seed, PARTED);
+        for (int m = 0; m < 6; m++) part[n][m] = random_between(seed, -1, 1);
+    }
+    return count;
+}
+
+TEST(parts_of_a_field_are_summed)
+{
     unsigned seed = 4;
     for (int trial = 0; trial < TRIALS; trial++) {
-        double part[FUNCTIONS][6], u[NODES][3], sum[3][6], root[6][6][3];
-        double row[6][COLUMNS] = {{0}}, wanted[6][COLUMNS] = {{0}};
-        int node[FUNCTIONS], place[NODES], count = random_int(&seed, FUNCTIONS + 1);
-        for (int n = 0; n < NODES; n++) {
-            place[n] = NODES - 1 - n;
-            for (int d = 0; d < 3; d++) u[n][d] = random_between(&seed, -1, 1);
-        }
-        for (int n = 0; n < count; n++) {
-            node[n] = random_int(&seed, NODES);
-            for (int m = 0; m < 6; m++) part[n][m] = random_between(&seed, -1, 1);
-        }
-        for (int m = 0; m < 6; m++)
-            for (int k = 0; k < 18; k++) root[m][k / 3][k % 3] = random_between(&seed, -1, 1);
+        double part[FUNCTIONS][6], u[PARTED][3], sum[3][6];
+        int node[FUNCTIONS], count = make_parts(&seed, node, part);
+        for (int n = 0; n < 3 * PARTED; n++) u[n / 3][n % 3] = random_between(&seed, -1, 1);
         ref_frame_sums.derive(count, node, (const double(*)[6])part, (const double(*)[3])u, sum);
-        ref_frame_sums.root(count, node, place, (const double(*)[6])part,
-                            (const double(*)[6][3])root, COLUMNS, row[0]);
         for (int m = 0; m < 6; m++)
             for (int d = 0; d < 3; d++) {
                 double one = 0;
                 for (int n = 0; n < count; n++) one += part[n][m] * u[node[n]][d];
                 assert_true(fabs(sum[d][m] - one) < 1e-13);
-                for (int n = 0; n < count; n++)
-                    for (int i = 0; i < 6; i++)
-                        wanted[i][3 * place[node[n]] + d] += part[n][m] * root[m][i][d];
             }
+    }
+}
+
+TEST(parts_make_rows_of_strains)
+{
+    enum { COLUMNS = 3 * REF_FRAME_TILE };
+    unsigned seed = 5;
+    for (int trial = 0; trial < TRIALS; trial++) {
+        double part[FUNCTIONS][6], work[6][REF_FRAME_TILE], wanted[6][3][PARTED] = {{{0}}};
+        double row[6 * COLUMNS + REF_FRAME_TILE];
+        int node[FUNCTIONS], place[PARTED], count = make_parts(&seed, node, part);
+        RefFrameRoot root;
+        for (int n = 0; n < PARTED; n++) place[n] = PARTED - 1 - n;
+        for (int k = 0; k < 18; k++)
+            root.membrane[k / 6][k / 3 % 2][k % 3] = random_between(&seed, -1, 1);
+        for (int k = 0; k < 15; k++) root.bending[k / 5][k % 5] = random_between(&seed, -1, 1);
+        for (int d = 0; d < 3; d++) root.normal[d] = random_between(&seed, -1, 1);
+        ref_frame_sums.root(count, node, place, (const double(*)[6])part, &root, PARTED, work[0],
+                            row);
+        for (int n = 0; n < count; n++)
+            for (int d = 0; d < 3; d++)
+                for (int i = 0; i < 3; i++) {
+                    int at = place[node[n]];
+                    for (int k = 0; k < 2; k++)
+                        wanted[i][d][at] += root.membrane[i][k][d] * part[n][1 + k];
+                    for (int m = 0; m < 5; m++)
+                        wanted[3 + i][d][at] +=
+                            root.bending[i][m] * part[n][1 + m] * root.normal[d];
+                }
         for (int i = 0; i < 6; i++)
-            for (int c = 0; c < COLUMNS; c++) assert_true(fabs(row[i][c] - wanted[i][c]) < 1e-13);
+            for (int c = 0; c < 3 * PARTED; c++)
+                assert_true(fabs(row[i * ref_frame_columns(3 * PARTED) + c] -
+                                 wanted[i][c / PARTED][c % PARTED]) < 1e-13);
     }
 }
 

@@ -47,9 +47,11 @@ bool ref_thin_is_stiff(const RefFrame *frame, double area, double trace)
            frame->inverse[0] + frame->inverse[1] < MOST_TRACE * trace;
 }
 
+/* Of the strains 11, 22, and 12 twice. */
+static const double times[3] = {1, 1, 2};
+
 void ref_thin_strains(const RefFrame *frame, const double part[6], double B[6][3])
 {
-    static const double times[3] = {1, 1, 2};
     const double(*a)[3] = frame->tangent;
     for (int d = 0; d < 3; d++) {
         B[0][d] = part[1] * a[0][d];
@@ -63,24 +65,24 @@ void ref_thin_strains(const RefFrame *frame, const double part[6], double B[6][3
     }
 }
 
-/* What a function's parts are multiplied by to rows whose products are the blocks of the stiffness.
- */
-static void find_roots(const RefFrame *frame, const double weight[2], double poisson,
-                       double root[6][6][3])
+/* G times the strains of ref_thin_strains(). */
+static RefFrameRoot find_root(const RefFrame *frame, const double weight[2], double poisson)
 {
-    double G[3][3], B[6][3];
+    const double(*a)[3] = frame->tangent;
+    RefFrameRoot root = {.normal = {frame->normal[0], frame->normal[1], frame->normal[2]}};
+    double G[3][3];
     ref_thin_factor(frame->inverse, poisson, G);
-    for (int m = 0; m < 6; m++) {
-        double one[6] = {0};
-        one[m] = 1;
-        ref_thin_strains(frame, one, B);
-        for (int i = 0; i < 6; i++)
-            for (int d = 0; d < 3; d++) {
-                double sum = 0;
-                for (int j = i % 3; j < 3; j++) sum += G[i % 3][j] * B[i / 3 * 3 + j][d];
-                root[m][i][d] = weight[i / 3] * sum;
-            }
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 2; k++)
+            for (int d = 0; d < 3; d++)
+                root.membrane[i][k][d] = weight[0] * (G[i][k] * a[k][d] + G[i][2] * a[!k][d]);
+        for (int m = i; m < 3; m++) {
+            double bent = weight[1] * G[i][m] * times[m];
+            for (int k = 0; k < 2; k++) root.bending[i][k] += bent * frame->symbol[m][k];
+            root.bending[i][2 + m] = -bent;
+        }
     }
+    return root;
 }
 
 /* Writes a sample's row of the mass, and behind those of others its rows of the stiffness, if it
@@ -94,15 +96,13 @@ static void write_sample(const RefSamples *samples, long p, double t, const RefM
     const int *node = samples->node + from;
     const double(*part)[6] = (const double(*)[6])(samples->part + from);
     const RefFrame *frame = samples->frame + p;
-    double weight[2], root[6][6][3], area = samples->area[p], times = sqrt(area * t);
+    double weight[2], area = samples->area[p], root_of_mass = sqrt(area * t);
     ref_thin_weights(area, t, material, weight);
     bool stiff = ref_thin_is_stiff(frame, area / samples->weight[p], samples->trace[p]);
-    for (int e = 0; e < count; e++) shape[work->number[node[e]]] += times * part[e][0];
+    for (int e = 0; e < count; e++) shape[work->number[node[e]]] += root_of_mass * part[e][0];
     if (!stiff) return;
-    find_roots(frame, weight, material->poisson, root);
-    memset(strain, 0, 6 * (size_t)columns * sizeof *strain);
-    ref_frame_sums.root(count, node, work->number, part, (const double(*)[6][3])root, (int)columns,
-                        strain);
+    RefFrameRoot root = find_root(frame, weight, material->poisson);
+    ref_frame_sums.root(count, node, work->number, part, &root, nodes, work->part, strain);
     work->stiff++;
 }
 
@@ -116,7 +116,7 @@ RefThinWork ref_thin_work(long nodes)
 
 void ref_thin_work_free(RefThinWork *work)
 {
-    sm_free_all(work->node, work->number, work->strain, work->shape, work->square);
+    sm_free_all(work->node, work->number, work->strain, work->shape, work->part, work->square);
     *work = (RefThinWork){.node = NULL};
 }
 
@@ -140,7 +140,8 @@ static void square_rows(const RefThinWork *work, RefElement *element)
     for (int a = 0; a < count; a++)
         for (int b = a; b < count; b++, sum++)
             for (int k = 0; k < 9; k++) {
-                int i = 3 * a + k / 3, j = 3 * b + k % 3, low = i < j ? i : j, high = i + j - low;
+                int i = k / 3 * count + a, j = k % 3 * count + b;
+                int low = i < j ? i : j, high = i + j - low;
                 (*sum)[1 + k] = work->square[(long)low * columns + high];
             }
 }
@@ -150,9 +151,10 @@ static void make_rows(long columns, RefThinWork *work)
 {
     if (columns <= work->columns) return;
     size_t size = REF_SAMPLES_PER_CELL * (size_t)columns;
-    sm_free_all(work->strain, work->shape, work->square);
+    sm_free_all(work->strain, work->shape, work->part, work->square);
     work->columns = columns;
-    work->strain = sm_alloc(6 * size, sizeof *work->strain);
+    work->strain = sm_alloc(6 * size + REF_FRAME_TILE, sizeof *work->strain);
+    work->part = sm_alloc(6 * (size_t)columns, sizeof *work->part);
     work->shape = sm_alloc(size, sizeof *work->shape);
     work->square = sm_alloc((size_t)(columns * columns), sizeof *work->square);
 }

@@ -32,6 +32,7 @@ typedef struct {
     int stiff;          /* samples that have rows of the stiffness, */
     double *strain;     /* [6 samples][columns] its roots: weighted strains */
     double *shape;      /* [samples][columns] and of the mass */
+    double *part;       /* [6][columns] of a sample */
     double *square;     /* [columns][columns] */
     long columns;       /* that there is room for */
 } RefThinWork;
