@@ -163,9 +163,9 @@ int ref_cracked_sample(const RefCracked *cracked, long c, const double theta[2])
 }
 
 /* The functions at any place, from the samples' beside it. */
-static int functions_at(const void *samples, const double theta[3], RefShape *shape)
+static int functions_at(const void *kept, const double theta[3], RefShape *shape)
 {
-    const RefCracked *cracked = samples;
+    const RefCracked *cracked = kept;
     const RefShell *shell = cracked->shell;
     int c = ref_quadtree_at(&shell->tree, theta), n = ref_cracked_sample(cracked, c, theta);
     if (n < 0)
@@ -174,15 +174,9 @@ static int functions_at(const void *samples, const double theta[3], RefShape *sh
     return shape->count ? (int)shell->basis : 0;
 }
 
-static double area_at(const void *samples, const double theta[3])
+static const RefSamples *samples_of(const void *kept, long cell)
 {
-    const RefCracked *cracked = samples;
-    const RefQuadtree *tree = &cracked->shell->tree;
-    double middle[2], edge[2];
-    int c = ref_quadtree_at(tree, theta);
-    ref_quadtree_cell(tree, tree->cell + c, middle, edge);
-    int n = ref_samples_nearest(middle, edge, theta);
-    return cracked->cell[c].samples.area[n] / cracked->cell[c].samples.weight[n];
+    return &((const RefCracked *)kept)->cell[cell].samples;
 }
 
 bool ref_cracked_side(const RefCracked *cracked, const double theta[2], const double eye[2],
@@ -271,7 +265,7 @@ void ref_cracked_create(RefShell *shell, const RefShellOptions *options,
     find_above(cracked);
     shell->nodes.cut = (RefCut){ref_cracks_pass, &cracked->cracks};
     ref_cracked_remake(cracked);
-    shell->functions = (RefShellFunctions){functions_at, area_at, cracked};
+    shell->functions = (RefShellFunctions){functions_at, samples_of, cracked};
 }
 
 /* The share of its own weight that a cell's node gets from its cover, as far as this is on the

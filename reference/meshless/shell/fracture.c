@@ -7,8 +7,6 @@
 #include "../../../lib/vector.h"
 #include "field_place.h"
 
-/* Samples of a cell in the middles of its quarters. */
-static const int quarter[4] = {7, 10, 25, 28};
 /* A tip sees stresses up to this many cells away; a crack begins as many cells from others; arms
  * branch when they are as long; and arms of a branch turn by this angle. */
 static const double TIP_CELLS = 1, START_CELLS = 3, BRANCH_CELLS = 2, BRANCH_ANGLE = 0.6;
@@ -68,7 +66,8 @@ RefFaceStress *ref_fracture_stresses(const RefCracked *cracked, const double (*u
     *count = 0;
     for (long c = 0; c < cracked->shell->tree.count; c++)
         for (int q = 0; cracked->cell[c].made && q < 4; q++)
-            stress[(*count)++] = stress_at(cracked, &cracked->cell[c].samples, quarter[q], u);
+            stress[(*count)++] =
+                stress_at(cracked, &cracked->cell[c].samples, ref_samples_quarter(q), u);
     return stress;
 }
 

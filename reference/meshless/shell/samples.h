@@ -12,6 +12,12 @@
 /* Three by three in each of four parts of a cell. */
 enum { REF_SAMPLES_PER_CELL = 36 };
 
+/* That of them in the middle of a cell's quarter: 0 to 3, along the first axis first. */
+static inline int ref_samples_quarter(int quarter)
+{
+    return 7 + 3 * (quarter & 1) + 18 * (quarter >> 1);
+}
+
 /* The middle surface at a point. Pairs of indices are in the order 11, 22, 12. */
 typedef struct {
     double x[3];

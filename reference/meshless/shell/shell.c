@@ -45,7 +45,7 @@ SmCode ref_shell_build(const RefChart *chart, const RefShellOptions *options, Re
 
 int ref_shell_shape(const RefShell *shell, const double theta[3], RefShape *shape)
 {
-    if (shell->functions.at) return shell->functions.at(shell->functions.samples, theta, shape);
+    if (shell->functions.at) return shell->functions.at(shell->functions.kept, theta, shape);
     const RefCell *cell = shell->tree.cell + ref_quadtree_at(&shell->tree, theta);
     double edge = ref_quadtree_edge(&shell->tree, cell);
     return ref_samples_shape(&shell->nodes, shell->basis, edge, theta, shape);

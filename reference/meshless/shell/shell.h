@@ -15,12 +15,12 @@ typedef struct {
 } RefShellOptions;
 
 /* Where functions are kept at samples (cracked.h): at() writes those at a place, and returns the
- * basis, or 0 where there are none; area() is what the surface had about there, over that in the
- * plane, before any crack. */
+ * basis, or 0 where there are none; cell() are those of a terminal cell, with frames, and areas
+ * before any crack. */
 typedef struct {
-    int (*at)(const void *samples, const double theta[3], RefShape *shape);
-    double (*area)(const void *samples, const double theta[3]);
-    const void *samples;
+    int (*at)(const void *kept, const double theta[3], RefShape *shape);
+    const RefSamples *(*cell)(const void *kept, long cell);
+    const void *kept;
 } RefShellFunctions;
 
 typedef struct {

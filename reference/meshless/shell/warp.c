@@ -60,11 +60,47 @@ void ref_warp_place_at(const double middle[2], const double edge[2], int p, doub
     theta[2] = 0;
 }
 
-static void add_slopes(const RefShape *shape, int place, int *number, long *room, RefWarp *warp)
+/* The functions at a place of a cell: the next one's slopes are `stride` numbers on. */
+typedef struct {
+    int count, stride;
+    const int *node;
+    const double *slope;
+    RefFrame frame;
+} Functions;
+
+/* Those of place number p, or none: between cracks they may not leave the surface its area. */
+static Functions functions_at(const RefShell *shell, long c, int p, RefShape *shape)
 {
+    const RefShellFunctions *kept = &shell->functions;
+    Functions found = {.count = 0};
+    if (kept->cell) {
+        const RefSamples *samples = kept->cell(kept->kept, c);
+        const int n = ref_samples_quarter(p);
+        const long start = samples->start[n];
+        const RefFrame *frame = samples->frame + n;
+        if (frame->area > LEAST_AREA * samples->area[n] / samples->weight[n])
+            found = (Functions){(int)(samples->start[n + 1] - start), 6, samples->node + start,
+                                samples->part[start] + 1, *frame};
+    } else {
+        double middle[2], edge[2], theta[3];
+        ref_quadtree_cell(&shell->tree, shell->tree.cell + c, middle, edge);
+        ref_warp_place_at(middle, edge, p, theta);
+        if (ref_shell_at(shell, theta, shape, &found.frame)) {
+            found.count = shape->count;
+            found.stride = 3;
+            found.node = shape->node;
+            found.slope = shape->gradient[0];
+        }
+    }
+    return found;
+}
+
+static void add_slopes(const Functions *at, int place, int *number, long *room, RefWarp *warp)
+{
+    const double *slope = at->slope;
     long from = warp->start[warp->cells], end = warp->start[warp->cells + 1];
-    for (int n = 0; n < shape->count; n++) {
-        int node = shape->node[n];
+    for (int n = 0; n < at->count; n++, slope += at->stride) {
+        int node = at->node[n];
         if (number[node] < 0) {
             sm_make_room(warp->node, room[0], end + 1);
             sm_make_room(warp->slope, room[1], end + 1);
@@ -72,17 +108,9 @@ static void add_slopes(const RefShape *shape, int place, int *number, long *room
             number[node] = (int)(end - from);
             warp->node[end++] = node;
         }
-        for (int k = 0; k < 2; k++)
-            warp->slope[from + number[node]][2 * place + k] += shape->gradient[n][k];
+        for (int k = 0; k < 2; k++) warp->slope[from + number[node]][2 * place + k] += slope[k];
     }
     warp->start[warp->cells + 1] = end;
-}
-
-/* Whether functions leave the surface its area at a place: between cracks they may not. */
-static bool bears(const RefShell *shell, const double theta[3], const RefFrame *frame)
-{
-    const RefShellFunctions *kept = &shell->functions;
-    return !kept->at || frame->area > LEAST_AREA * kept->area(kept->samples, theta);
 }
 
 static void make_cells(const RefShell *shell, RefWarp *warp)
@@ -97,17 +125,16 @@ static void make_cells(const RefShell *shell, RefWarp *warp)
     warp->tug = sm_alloc(PLACES * cells, sizeof *warp->tug);
     for (long n = 0; n < warp->nodes; n++) number[n] = -1;
     for (long c = 0; c < shell->tree.count; c++) {
-        double middle[2], edge[2], theta[3];
+        double middle[2], edge[2];
         if (shell->tree.cell[c].child >= 0) continue;
         ref_quadtree_cell(&shell->tree, shell->tree.cell + c, middle, edge);
         warp->start[warp->cells + 1] = warp->start[warp->cells];
         for (int p = 0; p < PLACES; p++) {
-            RefFrame frame;
-            ref_warp_place_at(middle, edge, p, theta);
-            if (!ref_shell_at(shell, theta, &shape, &frame) || !bears(shell, theta, &frame))
-                continue;
-            note_place(&frame, edge[0] * edge[1] / PLACES, warp->place + PLACES * warp->cells + p);
-            add_slopes(&shape, p, number, room, warp);
+            Functions at = functions_at(shell, c, p, &shape);
+            if (at.count == 0) continue;
+            note_place(&at.frame, edge[0] * edge[1] / PLACES,
+                       warp->place + PLACES * warp->cells + p);
+            add_slopes(&at, p, number, room, warp);
         }
         for (long e = warp->start[warp->cells]; e < warp->start[warp->cells + 1]; e++)
             number[warp->node[e]] = -1;
