@@ -36,6 +36,14 @@ static Uses find_uses(long nodes, long count, const RefElement *const *element)
     return uses;
 }
 
+/* A node's sums in an element, which are in no cache: all elements are larger than that. */
+static void fetch(const RefElement *of, long a)
+{
+    const char *from = (const char *)ref_element_sum(of, a, a),
+               *to = from + (size_t)(of->count - a) * sizeof *of->sum;
+    for (; from < to; from += 64) __builtin_prefetch(from);
+}
+
 /* The node's partners, rising; `number` is -1 of all before and their place afterwards. Nodes that
  * no sample of a cell sees together are none. */
 static void find_partners(long n, const Uses *uses, const RefElement *const *element, int *number,
@@ -55,6 +63,7 @@ static void find_partners(long n, const Uses *uses, const RefElement *const *ele
     for (long u = uses->start[n]; u < uses->start[n + 1]; u++) {
         const RefElement *of = element[uses->element[u]];
         long a = uses->place[u];
+        if (u + 1 < uses->start[n + 1]) fetch(element[uses->element[u + 1]], uses->place[u + 1]);
         for (long b = a; b < of->count; b++) {
             if (number[of->node[b]] >= 0 || ref_element_sum(of, a, b)[0] == 0) continue;
             number[of->node[b]] = 0;
@@ -76,7 +85,8 @@ static void sum_row(long n, const Uses *uses, const RefElement *const *element, 
         for (long b = a; b < of->count; b++) {
             int place = number[of->node[b]];
             const double *sum = ref_element_sum(of, a, b);
-            for (int k = 0; place >= 0 && k < 10; k++) row->sum[place][k] += sum[k];
+            if (place < 0) continue;
+            for (int k = 0; k < 10; k++) row->sum[place][k] += sum[k];
         }
     }
     for (int b = 0; b < row->count; b++) number[row->partner[b]] = -1;

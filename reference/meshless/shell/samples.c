@@ -7,10 +7,12 @@
 #include "../../../lib/csr.h"
 #include "../../../lib/isa.h"
 #include "../body/covers.h"
-#include "../body/gauss_rule.h"
 
 static const double MOST_SLOPE = 6, MOST_SECOND = 50;
 enum { ORDER = 3, PARTS = 2, ALONG = ORDER * PARTS };
+/* ref_gauss_rule(ORDER). */
+static const double point[ORDER] = {-0.38729833462074169, 0, 0.38729833462074169};
+static const double weight[ORDER] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
 _Static_assert(PARTS == 2, "of two parts the second begins at 1");
 _Static_assert((int)ALONG == (int)REF_GRID_SIDE && (int)ALONG == (int)REF_CELL_SIDE, "one grid");
 
@@ -23,8 +25,7 @@ void ref_samples_free(RefSamples *samples)
 
 void ref_samples_grid(const RefQuadtree *tree, long cell, double at[2][REF_GRID_SIDE])
 {
-    double point[ORDER], weight[ORDER], middle[2], edge[2];
-    ref_gauss_rule(ORDER, point, weight);
+    double middle[2], edge[2];
     ref_quadtree_cell(tree, tree->cell + cell, middle, edge);
     for (int d = 0; d < 2; d++)
         for (int i = 0; i < ALONG; i++)
@@ -34,8 +35,7 @@ void ref_samples_grid(const RefQuadtree *tree, long cell, double at[2][REF_GRID_
 /* Appends a cell's points. */
 static void place(const RefQuadtree *tree, long cell, RefSamples *samples)
 {
-    double point[ORDER], weight[ORDER], middle[2], edge[2], at[2][ALONG];
-    ref_gauss_rule(ORDER, point, weight);
+    double middle[2], edge[2], at[2][ALONG];
     ref_quadtree_cell(tree, tree->cell + cell, middle, edge);
     ref_samples_grid(tree, cell, at);
     for (int n = 0; n < REF_SAMPLES_PER_CELL; n++, samples->count++) {
@@ -336,17 +336,15 @@ static void take_basis(RefBasis basis, bool last, double edge, int count, RefSam
                        Pending *pending, RefSamples *samples)
 {
     RefCellFound found;
-    bool take[REF_SAMPLES_PER_CELL];
-    int parts[REF_SAMPLES_PER_CELL];
+    bool take[REF_SAMPLES_PER_CELL], serve[REF_SAMPLES_PER_CELL];
     long at[REF_SAMPLES_PER_CELL];
     ref_cell_functions.shape((int)basis, count, edge, work->node, &found);
     for (int p = 0; p < REF_SAMPLES_PER_CELL; p++) {
-        bool serves = found.pivot[p] > REF_LEAST_PIVOT && found.most[0][p] * edge <= MOST_SLOPE &&
-                      found.most[1][p] * edge * edge <= MOST_SECOND;
-        take[p] = pending->is[p] && (serves || last);
+        serve[p] = found.pivot[p] > REF_LEAST_PIVOT && found.most[0][p] * edge <= MOST_SLOPE &&
+                   found.most[1][p] * edge * edge <= MOST_SECOND;
+        take[p] = pending->is[p] && (serve[p] || last);
         pending->is[p] = pending->is[p] && !take[p];
         pending->count -= take[p];
-        parts[p] = serves ? REF_CELL_PARTS : 1;
         at[p] = samples->start[p];
     }
     for (int n = 0; n < count; n++)
@@ -355,7 +353,8 @@ static void take_basis(RefBasis basis, bool last, double edge, int count, RefSam
             if (!take[p] || !(of->weight[0][p] > 0)) continue;
             samples->node[at[p]] = work->member[n];
             double *part = samples->part[at[p]++];
-            for (int k = 0; k < REF_CELL_PARTS; k++) part[k] = k < parts[p] ? of->part[k][p] : 0;
+            for (int k = 0; k < REF_CELL_PARTS; k++) part[k] = of->part[k][p];
+            if (!serve[p]) memset(part + 1, 0, (REF_CELL_PARTS - 1) * sizeof *part);
         }
 }
 

@@ -69,12 +69,14 @@ cholmod_sparse *ref_node_ordered(const RefMatrices *matrices, double shift, cons
     for (int i = 0; i < M->columns; i++)
         for (int e = M->start[i]; e < M->start[i + 1]; e++) {
             int p = 3 * place[i], q = 3 * place[M->row[e]];
-            for (int a = 0; a < 3; a++) {
-                const double *from = K->value + K->start[3 * i + a] + 3 * (e - M->start[i]) - a;
-                for (int b = p == q ? a : 0; b < 3; b++) {
-                    int at = end[p <= q ? p + a : q + b]++;
-                    row[at] = p <= q ? q + b : p + a;
-                    value[at] = from[b] - (a == b ? shift * M->value[e] : 0);
+            const double *from[3], less = shift * M->value[e];
+            for (int a = 0; a < 3; a++)
+                from[a] = K->value + K->start[3 * i + a] + 3 * (e - M->start[i]) - a;
+            for (int c = 0; c < 3; c++) { /* three columns, or the diagonal's lower half */
+                int *at = end + (p < q ? p : q) + c;
+                for (int r = p == q ? c : 0; r < 3; r++, ++*at) {
+                    row[*at] = (p < q ? q : p) + r;
+                    value[*at] = (p <= q ? from[c][r] : from[r][c]) - (r == c ? less : 0);
                 }
             }
         }
