@@ -175,6 +175,7 @@ static cholmod_factor *analyse(const RefSolver *like, const RefMatrices *matrice
         common->nmethods = 1;
         common->method[0].ordering = CHOLMOD_NATURAL;
         common->postorder = false;
+        for (int k = 0; k < 3; k++) common->nrelax[k] *= 3; /* columns: a node has three */
     } else if (ref_node_order_fits(matrices))
         return analyse_by_nodes(matrix, &matrices->mass, common);
     return cholmod_analyze(matrix, common);
