@@ -35,6 +35,8 @@ void ref_cracked_free(RefCracked *cracked)
     if (cracked->shell) {
         cracked->shell->nodes.cut = (RefCut){NULL, NULL};
         cracked->shell->functions = (RefShellFunctions){NULL, NULL, NULL};
+        free(cracked->shell->up);
+        cracked->shell->up = NULL;
     }
     ref_element_rows_free(&cracked->rows);
     ref_cracks_free(&cracked->cracks);
@@ -61,35 +63,35 @@ static void number_nodes(RefCracked *cracked)
     }
 }
 
-/* How far parameters of the middle surface are from it: half a curvature times a cell's square. */
+/* How far parameters of the middle surface are from it: half a curvature times a cell's square; and
+ * its normals. */
 static void find_above(RefCracked *cracked)
 {
     const RefNodes *whole = &cracked->whole;
     RefShape shape = ref_shape_create(whole);
     cracked->whole_above = sm_alloc((size_t)whole->count, sizeof *cracked->whole_above);
+    cracked->shell->up = sm_alloc((size_t)whole->count, sizeof *cracked->shell->up);
     for (long n = 0; n < whole->count; n++) {
         if (!ref_mls_at(whole, cracked->shell->basis, whole->position[n], &shape)) continue;
         RefFrame frame = ref_middle_of((const double(*)[3])cracked->whole_X, &shape);
         sm_subtract(cracked->whole_X[n], frame.x, cracked->whole_above[n]);
+        memcpy(cracked->shell->up[n], frame.normal, sizeof frame.normal);
     }
     ref_shape_free(&shape);
 }
 
-/* The place on the whole shell's middle surface and its area over that in the plane; where
- * functions are not defined, of the chart's, which that was fitted to. */
-static void whole_at(const RefCracked *cracked, const double theta[3], RefShape *whole, double x[3],
-                     double *area)
+/* Place, area and normal of the whole shell's middle surface; where functions are not defined,
+ * place and area of the chart's, which that was fitted to. */
+static RefFrame whole_at(const RefCracked *cracked, const double theta[3], RefShape *whole)
 {
     const RefChart *chart = &cracked->shell->chart;
-    if (ref_mls_at(&cracked->whole, cracked->shell->basis, theta, whole)) {
-        RefFrame frame = ref_middle_of((const double(*)[3])cracked->whole_X, whole);
-        memcpy(x, frame.x, sizeof frame.x);
-        *area = frame.area;
-    } else {
-        double L = chart->factor(chart->data, theta);
-        chart->place(chart->data, theta, x);
-        *area = L * L;
-    }
+    RefFrame frame = {.area = 0};
+    if (ref_mls_at(&cracked->whole, cracked->shell->basis, theta, whole))
+        return ref_middle_of((const double(*)[3])cracked->whole_X, whole);
+    double L = chart->factor(chart->data, theta);
+    chart->place(chart->data, theta, frame.x);
+    frame.area = L * L;
+    return frame;
 }
 
 /* The samples of a cell; its areas are those of the whole shell. */
@@ -99,8 +101,7 @@ static void take_samples(const RefCracked *cracked, long c, RefSamplesWork *take
     const RefShell *shell = cracked->shell;
     ref_samples_of(&shell->tree, c, edge_of(cracked, c), take, samples);
     for (long p = 0; p < samples->count; p++) {
-        double x[3], area;
-        whole_at(cracked, samples->theta[p], whole, x, &area);
+        double area = whole_at(cracked, samples->theta[p], whole).area;
         samples->trace[p] = 2 / area; /* as if the map were conformal: see cracked.h */
         samples->area[p] = area * samples->weight[p];
     }
@@ -345,15 +346,15 @@ static long split_cells(RefCracked *cracked)
 }
 
 /* A new node in the plane: parameters of the middle surface as those of the whole shell are, above
- * it by what is left of half the curvature times the square of its cell. */
+ * it by what is left of half the curvature times the square of its cell; and the normal. */
 static void place_parameter(RefCracked *cracked, const RefCrackedCell *cell, int node,
                             RefShape *whole)
 {
     const RefShell *shell = cracked->shell;
     const double *above = cracked->whole_above[cracked->cell[cell->whole].node[0]];
-    double x[3], area;
-    whole_at(cracked, shell->nodes.position[node], whole, x, &area);
-    for (int d = 0; d < 3; d++) shell->X[node][d] = x[d] + ldexp(above[d], -2 * cell->splits);
+    const RefFrame frame = whole_at(cracked, shell->nodes.position[node], whole);
+    for (int d = 0; d < 3; d++) shell->X[node][d] = frame.x[d] + ldexp(above[d], -2 * cell->splits);
+    memcpy(shell->up[node], frame.normal, sizeof frame.normal);
 }
 
 /* Nodes of cells that were split make way for those of new cells, which are marked in `fresh`
@@ -370,6 +371,7 @@ static unsigned char *move_nodes(RefCracked *cracked)
     nodes->position = sm_realloc(nodes->position, most, sizeof *nodes->position);
     nodes->reach = sm_realloc(nodes->reach, most, sizeof *nodes->reach);
     shell->X = sm_realloc(shell->X, most, sizeof *shell->X);
+    shell->up = sm_realloc(shell->up, most, sizeof *shell->up);
     for (long c = 0; c < tree->count; c++)
         for (int n = 0; !terminal(cracked, c) && n < cracked->cell[c].nodes; n++)
             vacant[free_count++] = cracked->cell[c].node[n];
@@ -571,6 +573,8 @@ RefCrackedSaved ref_cracked_save(const RefCracked *cracked)
                              .cell = sm_copy(cracked->cell, cells, sizeof *cracked->cell),
                              .nodes = ref_nodes_copy(&shell->nodes),
                              .X = sm_copy(shell->X, (size_t)shell->nodes.count, sizeof *shell->X),
+                             .up =
+                                 sm_copy(shell->up, (size_t)shell->nodes.count, sizeof *shell->up),
                              .cracks = ref_cracks_settled(&cracked->cracks)};
     for (size_t c = 0; c < cells; c++) {
         saved.cell[c].samples = (RefSamples){.count = 0};
@@ -583,7 +587,7 @@ void ref_cracked_saved_free(RefCrackedSaved *saved)
 {
     ref_nodes_free(&saved->nodes);
     ref_cracks_free(&saved->cracks);
-    sm_free_all(saved->tree, saved->cell, saved->X);
+    sm_free_all(saved->tree, saved->cell, saved->X, saved->up);
     *saved = (RefCrackedSaved){.cells = 0};
 }
 
@@ -597,8 +601,9 @@ void ref_cracked_restore(RefCracked *cracked, RefCrackedSaved *saved)
     shell->tree.leaves = saved->leaves;
     ref_nodes_free(&shell->nodes);
     shell->nodes = saved->nodes;
-    free(shell->X);
+    sm_free_all(shell->X, shell->up);
     shell->X = saved->X;
+    shell->up = saved->up;
     ref_cracks_free(&cracked->cracks);
     cracked->cracks = saved->cracks;
     ref_element_rows_free(&cracked->rows);

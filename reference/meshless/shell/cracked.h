@@ -46,7 +46,7 @@ typedef struct {
 } RefCrackedCounts;
 
 typedef struct {
-    RefShell *shell; /* the caller's; its tree, nodes, X and matrices change */
+    RefShell *shell; /* the caller's; its tree, nodes, X, up and matrices change */
     RefShellOptions options;
     RefCrackedOptions cracked;
     RefCracks cracks;
@@ -88,7 +88,7 @@ typedef struct {
     RefCell *tree;        /* [cells] */
     RefCrackedCell *cell; /* [cells] without samples and elements */
     RefNodes nodes;
-    double (*X)[3];
+    double (*X)[3], (*up)[3];
     RefCracks cracks;
 } RefCrackedSaved;
 

@@ -11,6 +11,7 @@ void ref_shell_free(RefShell *shell)
     ref_nodes_free(&shell->nodes);
     ref_matrices_free(&shell->matrices);
     free(shell->X);
+    free(shell->up);
     *shell = (RefShell){.X = NULL};
 }
 

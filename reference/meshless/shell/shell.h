@@ -28,7 +28,9 @@ typedef struct {
     RefQuadtree tree;
     RefNodes nodes;
     RefBasis basis;
-    double (*X)[3]; /* [nodes] the parameters of the middle surface, as displacements have them */
+    double (*X)[3];  /* [nodes] the parameters of the middle surface, as displacements have them */
+    double (*up)[3]; /* [nodes] the normals that the surface has there without cracks, or 0 where it
+                        has none; NULL: it has no cracks */
     RefMatrices matrices;
     long soft;                   /* samples without stiffness, before any crack (thin.h) */
     RefShellFunctions functions; /* at is NULL: computed where they are wanted */

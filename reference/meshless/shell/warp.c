@@ -31,9 +31,9 @@ void ref_warp_free(RefWarp *warp)
     release(warp);
     ref_matrices_free(&warp->laplacian);
     sm_free_all(warp->turn, warp->tug, warp->sum, warp->start, warp->node, warp->slope, warp->place,
-                warp->near, warp->other, warp->lean, warp->X, warp->rest_normal, warp->mass,
-                warp->moved, warp->turned, warp->pulled, warp->right, warp->answer, warp->drawn,
-                warp->column[0], warp->column[1], warp->piece, warp->held, warp->all);
+                warp->near, warp->other, warp->lean, warp->X, warp->rest_normal, warp->tilt,
+                warp->mass, warp->moved, warp->turned, warp->pulled, warp->right, warp->answer,
+                warp->drawn, warp->column[0], warp->column[1], warp->piece, warp->held, warp->all);
     *warp = (RefWarp){.nodes = 0};
 }
 
@@ -144,6 +144,28 @@ static void make_cells(const RefShell *shell, RefWarp *warp)
     free(number);
 }
 
+/* The surface's normal and a frame of right angles about it. */
+static void frame_of(const double a[2][3], double frame[3][3])
+{
+    memcpy(frame[0], a[0], sizeof frame[0]);
+    sm_cross(a[0], a[1], frame[2]);
+    sm_normalize(frame[0]);
+    sm_normalize(frame[2]);
+    sm_cross(frame[2], frame[0], frame[1]);
+}
+
+/* That of a node is the one that it had without cracks, as this frame carries it; where there was
+ * none, or is none now, it is the frame's. */
+static void note_normal(const RefShell *shell, long n, const RefFrame *frame, RefWarp *warp)
+{
+    const double *up = shell->up ? shell->up[n] : frame->normal;
+    double about[3][3];
+    if (!(frame->area > 0) || !(sm_dot(up, up) > 0)) up = frame->normal;
+    frame_of(frame->tangent, about);
+    memcpy(warp->rest_normal[n], up, sizeof *warp->rest_normal);
+    for (int k = 0; k < 3; k++) warp->tilt[n][k] = sm_dot(up, about[k]);
+}
+
 /* Normals at nodes; where functions are not defined there, at the middle of a quarter of the cell.
  */
 static void make_normals(const RefShell *shell, RefWarp *warp)
@@ -169,7 +191,7 @@ static void make_normals(const RefShell *shell, RefWarp *warp)
             memcpy(warp->lean[warp->near[n] + k], shape.gradient[k], sizeof *warp->lean);
         }
         warp->near[n + 1] = end;
-        memcpy(warp->rest_normal[n], frame.normal, sizeof frame.normal);
+        note_normal(shell, n, &frame, warp);
     }
     ref_shape_free(&shape);
 }
@@ -261,8 +283,9 @@ SmCode ref_warp_create(const RefShell *shell, RefWarp *warp, SmError *error)
 {
     size_t nodes = (size_t)shell->nodes.count;
     *warp = (RefWarp){.nodes = shell->nodes.count};
-    double(**field[])[3] = {&warp->X,      &warp->rest_normal, &warp->moved,  &warp->turned,
-                            &warp->pulled, &warp->right,       &warp->answer, &warp->drawn};
+    double(**field[])[3] = {&warp->X,     &warp->rest_normal, &warp->tilt,
+                            &warp->moved, &warp->turned,      &warp->pulled,
+                            &warp->right, &warp->answer,      &warp->drawn};
     for (size_t f = 0; f < sizeof field / sizeof *field; f++)
         *field[f] = sm_alloc(nodes, sizeof **field[f]);
     memcpy(warp->X, shell->X, nodes * sizeof *warp->X);
@@ -488,18 +511,20 @@ void ref_warp_slope(RefWarp *warp, const double (*flux)[2], int axis, double (*f
     for (long n = 0; n < warp->nodes; n++) memcpy(force[n], warp->sum[n], sizeof *force);
 }
 
-/* What a normal is by the surface's slopes there, less the one at rest. */
+/* What a normal has become by the surface's slopes there, less the one at rest. */
 static void turn_normal(RefWarp *warp, long n)
 {
-    double a[2][3] = {{0}}, normal[3];
+    const double *tilt = warp->tilt[n];
+    double a[2][3] = {{0}}, frame[3][3];
     for (long e = warp->near[n]; e < warp->near[n + 1]; e++) {
         const double *x = warp->X[warp->other[e]], *moved = warp->moved[warp->other[e]];
         for (int k = 0; k < 2; k++)
             for (int d = 0; d < 3; d++) a[k][d] += warp->lean[e][k] * (x[d] + moved[d]);
     }
-    sm_cross(a[0], a[1], normal);
-    sm_normalize(normal);
-    for (int d = 0; d < 3; d++) warp->turned[n][d] = normal[d] - warp->rest_normal[n][d];
+    frame_of((const double(*)[3])a, frame);
+    for (int d = 0; d < 3; d++)
+        warp->turned[n][d] = tilt[0] * frame[0][d] + tilt[1] * frame[1][d] + tilt[2] * frame[2][d] -
+                             warp->rest_normal[n][d];
 }
 
 void ref_warp_match(RefWarp *warp, const double (*model)[3], double (*field)[3])

@@ -43,12 +43,13 @@ typedef struct {
     int *other;                        /* [near[nodes]] */
     double (*lean)[2];                 /* [near[nodes]] and phi,k there */
     RefMatrices laplacian;             /* of the nodes; its stiffness alone */
-    double (*X)[3], (*rest_normal)[3];
-    double *mass; /* [nodes] their shares of 1, of each piece */
-    long pieces;  /* of what hangs together: one but for cracks */
-    int *piece;   /* [nodes] */
-    bool *held;   /* [pieces] by rows */
-    bool cut;     /* there are cracks */
+    double (*X)[3], (*rest_normal)[3]; /* [nodes] normals as without cracks, */
+    double (*tilt)[3]; /* [nodes] in a frame whose first axis is along a_1 and third the normal */
+    double *mass;      /* [nodes] their shares of 1, of each piece */
+    long pieces;       /* of what hangs together: one but for cracks */
+    int *piece;        /* [nodes] */
+    bool *held;        /* [pieces] by rows */
+    bool cut;          /* there are cracks */
 
     RefRows rows; /* of the nodes: what holds; the mean of a piece that is not held moves as of u */
     RefSolver *solver;
