@@ -127,6 +127,22 @@ static void derive(int count, const int *node, const double (*part)[6], const do
     }
 }
 
+static void pull(int count, const int *node, const double (*part)[6], const double times[6][3],
+                 double (*force)[3])
+{
+    Four by[6];
+    for (int m = 0; m < 6; m++) by[m] = (Four){times[m][0], times[m][1], times[m][2]};
+    for (int n = 0; n < count; n++) {
+        Four even = by[0] * part[n][0], odd = by[1] * part[n][1];
+        for (int m = 2; m < 6; m += 2) {
+            even += by[m] * part[n][m];
+            odd += by[m + 1] * part[n][m + 1];
+        }
+        even += odd;
+        for (int d = 0; d < 3; d++) force[node[n]][d] += even[d];
+    }
+}
+
 /* Parts 1 to 5 of all nodes, node by node. */
 static void gather_parts(int count, const int *node, const int *place, const double (*part)[6],
                          int nodes, double *at)
@@ -277,5 +293,5 @@ static void square(int rows, int columns, const double *row, double *sum)
     }
 }
 
-const RefFrameSums SM_ISA_NAME(ref_frame_sums) = {apply, add,   place,  weigh,  derive,
+const RefFrameSums SM_ISA_NAME(ref_frame_sums) = {apply, add,   place,  weigh,  derive, pull,
                                                   root,  parts, slopes, spread, square};

@@ -35,6 +35,10 @@ typedef struct {
     void (*derive)(int count, const int *node, const double (*part)[6], const double (*u)[3],
                    double sum[3][6]);
 
+    /* The transpose: force[node[n]][d] += sum over m of part[n][m] times[m][d]. */
+    void (*pull)(int count, const int *node, const double (*part)[6], const double times[6][3],
+                 double (*force)[3]);
+
     /* Six rows of ref_frame_columns(3 nodes), at d nodes + place[node[n]] along axis d; functions
      * of the same node add up. What is in columns beyond is undefined, and so are as many behind
      * the last row. `work`: six rows of ref_frame_columns(nodes). */

@@ -80,6 +80,25 @@ TEST(parts_of_a_field_are_summed)
     }
 }
 
+TEST(parts_pull_at_a_field)
+{
+    unsigned seed = 6;
+    for (int trial = 0; trial < TRIALS; trial++) {
+        double part[FUNCTIONS][6], times[6][3], force[PARTED][3], wanted[PARTED][3];
+        int node[FUNCTIONS], count = make_parts(&seed, node, part);
+        for (int k = 0; k < 18; k++) times[k / 3][k % 3] = random_between(&seed, -1, 1);
+        for (int n = 0; n < 3 * PARTED; n++)
+            force[n / 3][n % 3] = wanted[n / 3][n % 3] = random_between(&seed, -1, 1);
+        ref_frame_sums.pull(count, node, (const double(*)[6])part, (const double(*)[3])times,
+                            force);
+        for (int n = 0; n < count; n++)
+            for (int m = 0; m < 6; m++)
+                for (int d = 0; d < 3; d++) wanted[node[n]][d] += part[n][m] * times[m][d];
+        for (int n = 0; n < 3 * PARTED; n++)
+            assert_true(fabs(force[n / 3][n % 3] - wanted[n / 3][n % 3]) < 1e-13);
+    }
+}
+
 TEST(parts_make_rows_of_strains)
 {
     enum { COLUMNS = 3 * REF_FRAME_TILE };

@@ -21,13 +21,9 @@ void ref_field_value(const RefFieldPlace *place, double value[3])
 /* Strains are linear in the field's derivatives: of the sums of these once, not of each node's. */
 void ref_field_strains(const RefFieldPlace *place, const RefFrame *frame, double strain[6])
 {
-    double sum[3][6], B[6][3];
+    double sum[3][6];
     ref_frame_sums.derive(place->count, place->node, place->part, place->u, sum);
-    memset(strain, 0, sizeof(double[6]));
-    for (int d = 0; d < 3; d++) {
-        ref_thin_strains(frame, sum[d], B);
-        for (int i = 0; i < 6; i++) strain[i] += B[i][d];
-    }
+    ref_thin_strains(frame, (const double(*)[6])sum, strain);
 }
 
 void ref_field_root(const RefFieldPlace *place, const RefFrame *frame, double thickness,
@@ -48,20 +44,12 @@ void ref_field_pull(const RefFieldPlace *place, const RefFrame *frame, double th
                     const RefMaterial *material, const double root[6], double area,
                     double (*force)[3])
 {
-    double stress[6] = {0}, B[6][3], G[3][3], weight[2], pull[6][3] = {{0}};
+    double stress[6] = {0}, G[3][3], weight[2], pull[6][3];
     ref_thin_factor(frame->inverse, material->poisson, G);
     ref_thin_weights(1, thickness, material, weight);
     for (int i = 0; i < 6; i++)
         for (int j = i % 3; j < 3; j++)
             stress[i / 3 * 3 + j] += area * weight[i / 3] * G[i % 3][j] * root[i];
-    for (int m = 1; m < 6; m++) {
-        double one[6] = {0};
-        one[m] = 1;
-        ref_thin_strains(frame, one, B);
-        for (int i = 0; i < 6; i++)
-            for (int d = 0; d < 3; d++) pull[m][d] += B[i][d] * stress[i];
-    }
-    for (int n = 0; n < place->count; n++)
-        for (int d = 0; d < 3; d++)
-            for (int m = 1; m < 6; m++) force[place->node[n]][d] += place->part[n][m] * pull[m][d];
+    ref_thin_pull(frame, stress, pull);
+    ref_frame_sums.pull(place->count, place->node, place->part, (const double(*)[3])pull, force);
 }

@@ -126,7 +126,8 @@ void ref_middle_press(const RefSamples *samples, double pressure, double (*force
 
 void ref_middle_frames(const double (*X)[3], RefSamples *samples)
 {
-    if (!samples->frame) samples->frame = sm_alloc((size_t)samples->count, sizeof(RefFrame));
+    if (!samples->frame)
+        samples->frame = sm_realloc(NULL, (size_t)samples->count, sizeof(RefFrame));
     for (long p = 0; p < samples->count; p++) {
         long from = samples->start[p];
         samples->frame[p] =

@@ -50,22 +50,40 @@ bool ref_thin_is_stiff(const RefFrame *frame, double area, double trace)
 /* Of the strains 11, 22, and 12 twice. */
 static const double times[3] = {1, 1, 2};
 
-void ref_thin_strains(const RefFrame *frame, const double part[6], double B[6][3])
+void ref_thin_strains(const RefFrame *frame, const double sum[3][6], double strain[6])
 {
     const double(*a)[3] = frame->tangent;
+    double up[6] = {0};
+    for (int k = 0; k < 3; k++) strain[k] = 0;
     for (int d = 0; d < 3; d++) {
-        B[0][d] = part[1] * a[0][d];
-        B[1][d] = part[2] * a[1][d];
-        B[2][d] = part[1] * a[1][d] + part[2] * a[0][d];
-        for (int m = 0; m < 3; m++) {
-            const double *symbol = frame->symbol[m];
-            double D = part[3 + m] - symbol[0] * part[1] - symbol[1] * part[2];
-            B[3 + m][d] = -times[m] * D * frame->normal[d];
-        }
+        strain[0] += sum[d][1] * a[0][d];
+        strain[1] += sum[d][2] * a[1][d];
+        strain[2] += sum[d][1] * a[1][d] + sum[d][2] * a[0][d];
+        for (int m = 1; m < 6; m++) up[m] += sum[d][m] * frame->normal[d];
+    }
+    for (int m = 0; m < 3; m++) {
+        const double *symbol = frame->symbol[m];
+        strain[3 + m] = -times[m] * (up[3 + m] - symbol[0] * up[1] - symbol[1] * up[2]);
     }
 }
 
-/* G times the strains of ref_thin_strains(). */
+void ref_thin_pull(const RefFrame *frame, const double stress[6], double pull[6][3])
+{
+    const double(*a)[3] = frame->tangent;
+    double up[6] = {0};
+    for (int m = 0; m < 3; m++) {
+        up[3 + m] = -times[m] * stress[3 + m];
+        for (int k = 0; k < 2; k++) up[1 + k] -= up[3 + m] * frame->symbol[m][k];
+    }
+    for (int m = 0; m < 6; m++)
+        for (int d = 0; d < 3; d++) pull[m][d] = up[m] * frame->normal[d];
+    for (int d = 0; d < 3; d++) {
+        pull[1][d] += stress[0] * a[0][d] + stress[2] * a[1][d];
+        pull[2][d] += stress[1] * a[1][d] + stress[2] * a[0][d];
+    }
+}
+
+/* G times the strains of ref_thin_strains(), of a function alone. */
 static RefFrameRoot find_root(const RefFrame *frame, const double weight[2], double poisson)
 {
     const double(*a)[3] = frame->tangent;

@@ -55,9 +55,12 @@ void ref_element_free(RefElement *element);
  * plane. */
 bool ref_thin_is_stiff(const RefFrame *frame, double area, double trace);
 
-/* The strains of nodes' parameters: B, three rows of membrane (11, 22, twice 12), three of bending,
- * of a function with these parts. */
-void ref_thin_strains(const RefFrame *frame, const double part[6], double B[6][3]);
+/* The strains, three of membrane (11, 22, twice 12) and three of bending, of a displacement whose
+ * value and derivatives along axis d are sum[d], as functions' parts. */
+void ref_thin_strains(const RefFrame *frame, const double sum[3][6], double strain[6]);
+
+/* The transpose: the slopes by these of the product of strains and stresses. */
+void ref_thin_pull(const RefFrame *frame, const double stress[6], double pull[6][3]);
 
 /* What strains are multiplied by under the integral, H as rows of (11, 22, 12). */
 void ref_thin_law(const double inverse[3], double poisson, double H[3][3]);
