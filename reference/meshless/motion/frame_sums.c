@@ -111,19 +111,21 @@ typedef double Two __attribute__((vector_size(2 * sizeof(double)), aligned(sizeo
 static void derive(int count, const int *node, const double (*part)[6], const double (*u)[3],
                    double sum[3][6])
 {
-    Four four[3] = {{0}};
-    Two two[3] = {{0}};
-    for (int n = 0; n < count; n++) {
-        const Four first = *(const Four *)part[n];
-        const Two second = *(const Two *)(part[n] + 4);
-        for (int d = 0; d < 3; d++) {
-            four[d] += first * u[node[n]][d];
-            two[d] += second * u[node[n]][d];
+    Four four[2][3] = {{{0}}};
+    Two two[2][3] = {{{0}}};
+    for (int n = 0; n < count; n += 2)
+        for (int k = 0; k < 2 && n + k < count; k++) { /* each waits for the one before the other */
+            const Four first = *(const Four *)part[n + k];
+            const Two second = *(const Two *)(part[n + k] + 4);
+            const double *at = u[node[n + k]];
+            for (int d = 0; d < 3; d++) {
+                four[k][d] += first * at[d];
+                two[k][d] += second * at[d];
+            }
         }
-    }
     for (int d = 0; d < 3; d++) {
-        *(Four *)sum[d] = four[d];
-        *(Two *)(sum[d] + 4) = two[d];
+        *(Four *)sum[d] = four[0][d] + four[1][d];
+        *(Two *)(sum[d] + 4) = two[0][d] + two[1][d];
     }
 }
 
