@@ -95,29 +95,40 @@ static Functions functions_at(const RefShell *shell, long c, int p, RefShape *sh
     return found;
 }
 
-static void add_slopes(const Functions *at, int place, int *number, long *room, RefWarp *warp)
+/* The nodes of a cell's places, rising; `number` is -1 of all before and their place afterwards. */
+static void list_nodes(const Functions at[PLACES], int *number, long *room, RefWarp *warp)
 {
-    const double *slope = at->slope;
-    long from = warp->start[warp->cells], end = warp->start[warp->cells + 1];
-    for (int n = 0; n < at->count; n++, slope += at->stride) {
-        int node = at->node[n];
-        if (number[node] < 0) {
-            sm_make_room(warp->node, room[0], end + 1);
-            sm_make_room(warp->slope, room[1], end + 1);
-            memset(warp->slope[end], 0, sizeof *warp->slope);
-            number[node] = (int)(end - from);
-            warp->node[end++] = node;
+    const long from = warp->start[warp->cells];
+    long end = from;
+    for (int p = 0; p < PLACES; p++) {
+        sm_make_room(warp->node, room[0], end + at[p].count);
+        for (int n = 0; n < at[p].count; n++) {
+            int node = at[p].node[n];
+            if (number[node] < 0) warp->node[end++] = node;
+            number[node] = 0;
         }
-        for (int k = 0; k < 2; k++) warp->slope[from + number[node]][2 * place + k] += slope[k];
     }
+    sm_sort_ints(warp->node + from, (int)(end - from));
+    for (long e = from; e < end; e++) number[warp->node[e]] = (int)(e - from);
+    sm_make_room(warp->slope, room[1], end);
+    memset(warp->slope + from, 0, (size_t)(end - from) * sizeof *warp->slope);
     warp->start[warp->cells + 1] = end;
+}
+
+static void add_slopes(const Functions *at, int place, const int *number, RefWarp *warp)
+{
+    double(*to)[LANES] = warp->slope + warp->start[warp->cells];
+    const double *slope = at->slope;
+    for (int n = 0; n < at->count; n++, slope += at->stride)
+        for (int k = 0; k < 2; k++) to[number[at->node[n]]][2 * place + k] += slope[k];
 }
 
 static void make_cells(const RefShell *shell, RefWarp *warp)
 {
-    RefShape shape = ref_shape_create(&shell->nodes);
+    RefShape shape[PLACES];
     int *number = sm_alloc((size_t)warp->nodes, sizeof *number);
     long room[2] = {0};
+    for (int p = 0; p < PLACES; p++) shape[p] = ref_shape_create(&shell->nodes);
     size_t cells = (size_t)shell->tree.leaves;
     warp->start = sm_alloc(cells + 1, sizeof *warp->start);
     warp->place = sm_alloc(PLACES * cells, sizeof *warp->place);
@@ -128,19 +139,20 @@ static void make_cells(const RefShell *shell, RefWarp *warp)
         double middle[2], edge[2];
         if (shell->tree.cell[c].child >= 0) continue;
         ref_quadtree_cell(&shell->tree, shell->tree.cell + c, middle, edge);
-        warp->start[warp->cells + 1] = warp->start[warp->cells];
+        Functions at[PLACES];
+        for (int p = 0; p < PLACES; p++) at[p] = functions_at(shell, c, p, shape + p);
+        list_nodes(at, number, room, warp);
         for (int p = 0; p < PLACES; p++) {
-            Functions at = functions_at(shell, c, p, &shape);
-            if (at.count == 0) continue;
-            note_place(&at.frame, edge[0] * edge[1] / PLACES,
+            if (at[p].count == 0) continue;
+            note_place(&at[p].frame, edge[0] * edge[1] / PLACES,
                        warp->place + PLACES * warp->cells + p);
-            add_slopes(&at, p, number, room, warp);
+            add_slopes(at + p, p, number, warp);
         }
         for (long e = warp->start[warp->cells]; e < warp->start[warp->cells + 1]; e++)
             number[warp->node[e]] = -1;
         warp->cells++;
     }
-    ref_shape_free(&shape);
+    for (int p = 0; p < PLACES; p++) ref_shape_free(shape + p);
     free(number);
 }
 
@@ -238,11 +250,10 @@ void ref_warp_laplacian(const RefWarp *warp, const RefSparse *M, const double *s
         for (int a = 0; a < count; a++) {
             int i = node[a];
             for (int k = L->start[i]; k < L->start[i + 1]; k++) at[L->row[k]] = k;
-            for (int b = 0; b < count; b++) {
-                if (node[b] < i) continue;
+            for (int b = a; b < count; b++) {
                 int k = at[node[b]];
                 bool pair = k >= L->start[i] && k < L->start[i + 1] && L->row[k] == node[b];
-                if (pair) L->value[k] += square[a < b ? a * columns + b : b * columns + a];
+                if (pair) L->value[k] += square[a * columns + b];
             }
         }
     }
