@@ -56,7 +56,7 @@ static void note_members(Halving *h, long bin, int count, const int *member)
 {
     RefNodes *nodes = h->nodes;
     sm_make_room(nodes->member, h->member_room, h->members + count);
-    memcpy(nodes->member + h->members, member, (size_t)count * sizeof *member);
+    if (count) memcpy(nodes->member + h->members, member, (size_t)count * sizeof *member);
     nodes->bin[bin] = (RefNodesBin){.count = count, .first = h->members};
     h->members += count;
     if (count > nodes->most) nodes->most = count;

@@ -9,7 +9,6 @@
 #include "../motion/rotation.h"
 #include "../solve/least_squares.h"
 #include "projection.h"
-#include "tension.h"
 
 #define CONST(array) ((const double(*)[3])(array))
 
@@ -18,6 +17,7 @@ static void forget_holds(RefSheet *sheet)
     sheet->hold = NULL;
     sheet->follower = NULL;
     sheet->aim = sheet->slope = sheet->answer = sheet->gap = sheet->need = sheet->yield = NULL;
+    sheet->judged = NULL;
     sheet->tug = NULL;
     sheet->rows = (RefRows){0};
     sheet->holds = sheet->followers = 0;
@@ -29,7 +29,7 @@ static void release(RefSheet *sheet)
         sm_free_all(sheet->hold[k].x, sheet->hold[k].reach, sheet->hold[k].flux);
     ref_rows_free(&sheet->rows);
     sm_free_all(sheet->hold, sheet->follower, sheet->aim, sheet->slope, sheet->answer, sheet->gap,
-                sheet->need, sheet->yield, sheet->tug);
+                sheet->need, sheet->judged, sheet->yield, sheet->tug);
     forget_holds(sheet);
 }
 
@@ -203,6 +203,7 @@ static void find_leads(RefSheet *sheet, const RefRows *rows)
     sheet->answer = sm_alloc(count * size, sizeof *sheet->answer);
     sheet->gap = sm_alloc(count, sizeof *sheet->gap);
     sheet->need = sm_alloc(count, sizeof *sheet->need);
+    sheet->judged = sm_alloc(count, sizeof *sheet->judged);
     sheet->yield = sm_alloc(count * count, sizeof *sheet->yield);
     sheet->tug = sm_alloc(REF_WARP_PLACES * (size_t)sheet->warp.cells, sizeof *sheet->tug);
 }
@@ -457,7 +458,6 @@ void ref_sheet_pose(RefSheet *sheet)
 {
     for (int c = 0; c < 3 * sheet->followers; c++) sheet->need[c] = 0;
     sheet->next = 0;
-    sheet->judged = 0;
     pull(sheet, CONST(sheet->weight));
     set_targets(sheet);
     ref_warp_pose(&sheet->warp, CONST(sheet->steps.u));
@@ -480,13 +480,12 @@ static void find_gaps(RefSheet *sheet)
     }
 }
 
-/* Moves by the forces that close the gaps. A trace of regularisation makes holds harmless that
- * contradict each other. */
-static void close_gaps(RefSheet *sheet)
+/* The forces, by h / (b + h), whose answers the holds see as these, which they replace. A trace of
+ * regularisation makes holds harmless that contradict each other. */
+static void find_forces(RefSheet *sheet, double *seen)
 {
     size_t size = 3 * (size_t)sheet->warp.nodes, count = 3 * (size_t)sheet->followers;
-    double *S = sheet->yield, *gap = sheet->gap, trace = 0;
-    find_gaps(sheet);
+    double *S = sheet->yield, trace = 0;
     for (size_t c = 0; c < count; c++) {
         const double *answer = sheet->answer + of_coordinate(sheet, c);
         for (size_t r = 0; r < count; r++) {
@@ -497,15 +496,41 @@ static void close_gaps(RefSheet *sheet)
         trace += S[c * count + c];
     }
     for (size_t c = 0; c < count; c++) S[c * count + c] += 1e-12 * trace;
-    ref_least_squares_solve((int)count, 0, S, gap);
+    ref_least_squares_solve((int)count, 0, S, seen);
+}
+
+/* Moves by the forces that close the gaps, which holds need beside what they did. */
+static void close_gaps(RefSheet *sheet)
+{
+    RefSteps *steps = &sheet->steps;
+    size_t size = 3 * (size_t)sheet->warp.nodes, count = 3 * (size_t)sheet->followers;
+    double *gap = sheet->gap;
+    find_gaps(sheet);
+    find_forces(sheet, gap);
     for (size_t c = 0; c < count; c++) {
         const double *answer = sheet->answer + of_coordinate(sheet, c);
-        sheet->need[c] += (1 + sheet->steps.damping.stiffness_damping / sheet->steps.h) * gap[c];
+        sheet->need[c] += (1 + steps->damping.stiffness_damping / steps->h) * gap[c];
         for (size_t n = 0; n < size; n++) {
-            sheet->steps.u[n] += gap[c] * answer[n];
-            sheet->steps.v[n] += gap[c] * answer[n] / sheet->steps.h;
+            steps->u[n] += gap[c] * answer[n];
+            steps->v[n] += gap[c] * answer[n] / steps->h;
         }
     }
+}
+
+/* What holds needed against h G v is no tension: it ends with the step. */
+static void forget_drag(RefSheet *sheet)
+{
+    RefSteps *steps = &sheet->steps;
+    size_t size = 3 * (size_t)sheet->warp.nodes, count = 3 * (size_t)sheet->followers;
+    double *drag = steps->other, *seen = sheet->gap;
+    ref_sparse_apply(&steps->tension, 3, steps->v, drag);
+    for (size_t c = 0; c < count; c++) {
+        const double *answer = sheet->answer + of_coordinate(sheet, c);
+        seen[c] = 0;
+        for (size_t n = 0; n < size; n++) seen[c] += steps->h * answer[n] * drag[n];
+    }
+    find_forces(sheet, seen);
+    for (size_t c = 0; c < count; c++) sheet->need[c] -= seen[c];
 }
 
 static void take_pushes(RefSheet *sheet)
@@ -518,14 +543,18 @@ static void take_pushes(RefSheet *sheet)
     memset(sheet->impulse, 0, (size_t)sheet->warp.nodes * sizeof *sheet->impulse);
 }
 
-/* Tension is found where forces are no longer those that it was found for. */
+/* Tension is found where forces are no longer, by a quarter, those that it was found for. */
 static void bear_tension(RefSheet *sheet)
 {
-    double need = 0;
-    for (int c = 0; c < 3 * sheet->followers; c++) need += fabs(sheet->need[c]);
-    if (sheet->changed || need > 1.25 * sheet->judged || need < sheet->judged / 2) {
+    size_t count = 3 * (size_t)sheet->followers;
+    double off = 0, all = 0;
+    for (size_t c = 0; c < count; c++) {
+        off += fabs(sheet->need[c] - sheet->judged[c]);
+        all += fabs(sheet->judged[c]);
+    }
+    if (sheet->changed || off > all / 4) {
         ref_tension_find(&sheet->tension, &sheet->warp, &sheet->options.shell, &sheet->steps);
-        sheet->judged = need;
+        if (count) memcpy(sheet->judged, sheet->need, count * sizeof *sheet->judged);
         sheet->changed = false;
     }
     if (ref_tension_bear(&sheet->tension, &sheet->warp, &sheet->steps)) find_all_slopes(sheet);
@@ -543,6 +572,7 @@ void ref_sheet_step(RefSheet *sheet)
     memcpy(steps->force, warp->pulled, (size_t)warp->nodes * sizeof *warp->pulled);
     ref_steps_go(steps);
     if (sheet->followers) close_gaps(sheet);
+    if (sheet->followers && steps->taut) forget_drag(sheet);
     if (sheet->pushed)
         pull(sheet, CONST(sheet->weight));
     else

@@ -43,8 +43,7 @@ typedef struct {
     RefWarp warp;
     double (*weight)[3], (*force)[3]; /* [nodes] gravity; and with what pushes add to it */
     double (*impulse)[3];             /* [nodes] the next step's pushes */
-    bool pushed, changed;             /* changed: forces have, since tension was found, */
-    double judged;                    /* where all holds together needed this */
+    bool pushed, changed;             /* changed: forces have, since tension was found */
     RefTension tension;
     double (*tug)[2][3]; /* [places] of forces but for what holds need */
     int holds;
@@ -54,7 +53,8 @@ typedef struct {
      * parameters, and what forces along these do. */
     double *slope, *answer;
     int next;            /* the coordinate whose turn it is to be found anew */
-    double *need;        /* [3 followers] the forces there */
+    double *need;        /* [3 followers] the forces there, but for what h G v took (tension.h), */
+    double *judged;      /* and what they were when tension was found */
     double *gap, *yield; /* what the last step added, by h / (b + h); and [3 followers] square: how
                             far a force at each moves each */
     RefRows rows;        /* of the steps: what leading holds bind, and shapes and turns of others */
@@ -96,7 +96,8 @@ void ref_sheet_pose(RefSheet *sheet);
 SmCode ref_sheet_renew(RefSheet *sheet, double *u, double *v, const double *moved,
                        double *const residual[2], SmError *error);
 
-/* Every piece's displacements are what its nodes move by on average, and the surface is posed. */
+/* Every piece's displacements are what its nodes move by on average, and the surface is posed; what
+ * holds need and steps bear is found anew by the next steps. */
 void ref_sheet_anchor(RefSheet *sheet);
 
 /* How far a hold's points are off, and its tangents, these as turns. */

@@ -99,24 +99,28 @@ void ref_tension_find(RefTension *tension, const RefWarp *warp, const RefShellOp
     tension->idle = tension->borne && (!tension->matters || bears_too_much(tension, warp));
 }
 
-/* Twice what there is; and where that comes and goes from place to place, half of what was. */
-static void set_borne(RefTension *tension, const RefWarp *warp)
+/* Twice what there is; and where that comes and goes from place to place, half of what was borne.
+ */
+static double *raised(const RefTension *tension, const RefWarp *warp)
 {
     size_t places = PLACES * (size_t)warp->cells;
-    double kept = tension->slack > SLACK ? 0 : 0.5;
-    if (!tension->borne) tension->borne = sm_alloc(places, sizeof *tension->borne);
+    double *borne = sm_alloc(places, sizeof *borne);
+    bool kept = tension->borne && tension->slack <= SLACK;
     for (size_t at = 0; at < places; at++)
-        tension->borne[at] = fmax(2 * tension->now[at], kept * tension->borne[at]);
-    tension->lacks = tension->idle = false;
-    tension->slack = 0;
+        borne[at] = fmax(2 * tension->now[at], kept ? tension->borne[at] / 2 : 0);
+    return borne;
 }
 
-/* Steps that bear what `borne` says, or none where no factor can be had. */
-static void make(RefTension *tension, const RefWarp *warp, RefSteps *steps)
+/* Has steps bear so much, which is taken over; where no factor can be had, as much as before. */
+static void make(RefTension *tension, const RefWarp *warp, double *borne, RefSteps *steps)
 {
     RefSparse G;
-    ref_warp_laplacian(warp, &steps->matrices->mass, tension->borne, &G);
-    if (ref_steps_bear(steps, &G, NULL) != SM_OK) ref_tension_drop(tension, steps);
+    ref_warp_laplacian(warp, &steps->matrices->mass, borne, &G);
+    bool made = ref_steps_bear(steps, &G, NULL) == SM_OK;
+    free(made ? tension->borne : borne);
+    if (made) tension->borne = borne;
+    tension->lacks = tension->idle = false;
+    tension->slack = 0;
 }
 
 bool ref_tension_bear(RefTension *tension, const RefWarp *warp, RefSteps *steps)
@@ -127,8 +131,7 @@ bool ref_tension_bear(RefTension *tension, const RefWarp *warp, RefSteps *steps)
         return true;
     }
     if (tension->slack <= SLACK && !tension->lacks) return false;
-    set_borne(tension, warp);
-    make(tension, warp, steps);
+    make(tension, warp, raised(tension, warp), steps);
     return true;
 }
 
@@ -140,11 +143,8 @@ void ref_tension_set(RefTension *tension, const double *borne, const RefWarp *wa
     tension->slack = 0;
     if (none == places)
         ref_tension_drop(tension, steps);
-    else if (!tension->borne || memcmp(borne, tension->borne, places * sizeof *borne) != 0) {
-        free(tension->borne);
-        tension->borne = sm_copy(borne, places, sizeof *borne);
-        make(tension, warp, steps);
-    }
+    else if (!tension->borne || memcmp(borne, tension->borne, places * sizeof *borne) != 0)
+        make(tension, warp, sm_copy(borne, places, sizeof *borne), steps);
 }
 
 void ref_tension_drop(RefTension *tension, RefSteps *steps)

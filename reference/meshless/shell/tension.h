@@ -10,8 +10,9 @@
  * With tangents exp(w) s and a tug of size T the second derivative of the forces' work is
  * T (|s| dw^2 + 2 dw de) at most, whatever the pose, and T' is half of that bound: half is what it
  * takes for the energy never to gain more than the forces' work. Forces are what pushes, and what
- * holds beyond a piece's first need: where this rises suddenly, by tens of a strip's weight within
- * a step, the step or the next may gain energy, and the ones after them do not. G is of twice the
+ * holds beyond a piece's first need, but for what they need against h G v, which would feed itself.
+ * Where this rises suddenly, by tens of a strip's weight within a step, the step or the next may
+ * gain energy, and ones after them do not. G is of twice the
  * tension that it is made for, so that steps are seldom factorised anew: where tension has doubled
  * somewhere, and where for 10 steps there was next to none of what they bear. */
 #ifndef REF_TENSION_H
