@@ -553,7 +553,8 @@ static void bear_tension(RefSheet *sheet)
         all += fabs(sheet->judged[c]);
     }
     if (sheet->changed || off > all / 4) {
-        ref_tension_find(&sheet->tension, &sheet->warp, &sheet->options.shell, &sheet->steps);
+        ref_tension_find(&sheet->tension, &sheet->warp, &sheet->options.shell, &sheet->steps,
+                         sheet->pushed);
         if (count) memcpy(sheet->judged, sheet->need, count * sizeof *sheet->judged);
         sheet->changed = false;
     }

@@ -34,25 +34,48 @@ static void stretches_at(const RefWarp *warp, long at, double *squares, double *
     *product = sqrt(fmax(0, (q[0] * q[1] - q[2] * q[2]) * (S[0] * S[1] - S[2] * S[2]))) / area;
 }
 
+/* How much waves at a place are pushed back by, N/m: the largest principal value of f^k .
+ * tangent_l, as stretching and leaning share the rest, which the stiffness E t of that makes f^2 /
+ * (E t). */
+static double pull_on_waves(const RefWarp *warp, long at, double stiffness, double tug)
+{
+    const double(*f)[3] = CONST(warp->tug[at]), *R = warp->turn[at].R;
+    double area = warp->place[at].area, m[2][2];
+    if (!(area > 0)) return 0;
+    for (int l = 0; l < 2; l++) {
+        const double *s = warp->turn[at].tangent[l];
+        double now[3];
+        for (int d = 0; d < 3; d++) now[d] = sm_dot(R + 3 * d, s);
+        for (int k = 0; k < 2; k++) m[k][l] = sm_dot(f[k], now) / area;
+    }
+    double half = (m[0][0] + m[1][1]) / 2, off = (m[0][0] - m[1][1]) / 2;
+    double principal = half + sqrt(fmax(off * off + m[0][1] * m[1][0], 0));
+    return fmax(principal, 0) + tug * tug / stiffness;
+}
+
 /* Of how much more than there is steps bear too much: what G takes from motion is felt then. */
 static const double TOO_MUCH = 8;
 
-/* T' of all places; returns how far the surface is stretched most, 1 for not at all. */
-static double find(const RefWarp *warp, double *tension)
+/* T' of all places, and what of it waves feel; returns how far the surface is stretched most, 1 for
+ * not at all. */
+static double find(const RefWarp *warp, double stiffness, bool pushed, double *tension,
+                   double *felt)
 {
     double most = 0;
     for (long at = 0; at < PLACES * warp->cells; at++) {
         double squares, product, tug = tug_at(warp->place + at, CONST(warp->tug[at]));
         stretches_at(warp, at, &squares, &product);
         tension[at] = tug * (sqrt(squares) + sqrt(squares + 4)) / 4;
+        felt[at] =
+            pushed ? tension[at] : fmin(tension[at], pull_on_waves(warp, at, stiffness, tug));
         double both = sqrt(squares + 2 * product), apart = sqrt(fmax(0, squares - 2 * product));
         most = fmax(most, (both + apart) / 2);
     }
     return most;
 }
 
-/* Whether what T' is more than steps bear (NULL: none) can make waves grow: where these find room,
- * and are so long that places tell them from others. */
+/* Whether what waves feel more than steps bear (NULL: none) can make waves grow: where these find
+ * room, and are so long that places tell them from others. */
 static bool matters(const RefTension *tension, const double *borne, const RefWarp *warp,
                     const RefShellOptions *shell, const RefSteps *steps)
 {
@@ -63,7 +86,7 @@ static bool matters(const RefTension *tension, const double *borne, const RefWar
                      (h * h + 2 * h * steps->damping.stiffness_damping);
     double room = 0; /* for waves, in squares of their lengths */
     for (long at = 0; at < PLACES * warp->cells; at++) {
-        double area = warp->place[at].area, beyond = tension->now[at] - (borne ? borne[at] : 0);
+        double area = warp->place[at].area, beyond = tension->felt[at] - (borne ? borne[at] : 0);
         /* k^2 of the wave that bears least, or of the shortest that there is */
         double square = fmin(sqrt(mass / bending), M_PI * M_PI / (4 * area));
         if (h * h * beyond * square > mass + bending * square * square)
@@ -84,16 +107,19 @@ static bool bears_too_much(const RefTension *tension, const RefWarp *warp)
 
 void ref_tension_free(RefTension *tension)
 {
-    sm_free_all(tension->now, tension->borne);
+    sm_free_all(tension->now, tension->felt, tension->borne);
     *tension = (RefTension){.now = NULL};
 }
 
 void ref_tension_find(RefTension *tension, const RefWarp *warp, const RefShellOptions *shell,
-                      const RefSteps *steps)
+                      const RefSteps *steps, bool pushed)
 {
     size_t places = PLACES * (size_t)warp->cells;
+    double stiffness = shell->material.young * shell->thickness;
     if (!tension->now) tension->now = sm_alloc(places, sizeof *tension->now);
-    tension->stretch = fmax(tension->stretch, find(warp, tension->now));
+    if (!tension->felt) tension->felt = sm_alloc(places, sizeof *tension->felt);
+    tension->stretch =
+        fmax(tension->stretch, find(warp, stiffness, pushed, tension->now, tension->felt));
     tension->matters = matters(tension, NULL, warp, shell, steps);
     tension->lacks = tension->matters && matters(tension, tension->borne, warp, shell, steps);
     tension->idle = tension->borne && (!tension->matters || bears_too_much(tension, warp));

@@ -22,18 +22,21 @@
 #include "warp.h"
 
 typedef struct {
-    double *now, *borne; /* [4 cells] T', and for what steps were made last; or NULL */
-    bool matters;        /* to steps that bear none; */
-    bool lacks, idle;    /* these bear too little, or far more than there is: */
-    int slack;           /* since so many steps */
-    double stretch;      /* the largest of the surface since it was made, where forces were found */
+    double *now, *felt; /* [4 cells] T', and what of it waves feel; or NULL */
+    double *borne;      /* [4 cells] for what T' steps were made last; or NULL */
+    bool matters;       /* to steps that bear none; */
+    bool lacks, idle;   /* these bear too little, or far more than there is: */
+    int slack;          /* since so many steps */
+    double stretch;     /* the largest of the surface since it was made, where forces were found */
 } RefTension;
 
 void ref_tension_free(RefTension *tension);
 
-/* Finds the tension of all forces, whose tugs are the warp's, as it is posed; O(cells). */
+/* Finds the tension of all forces, whose tugs are the warp's, as it is posed. Where nothing pushed,
+ * what is felt is the tension along waves alone, so that holds which turn a surface by a little do
+ * not cost factors; else no step is to gain energy. O(cells). */
 void ref_tension_find(RefTension *tension, const RefWarp *warp, const RefShellOptions *shell,
-                      const RefSteps *steps);
+                      const RefSteps *steps, bool pushed);
 
 /* Before a step: has it bear what was found last. Returns whether steps were factorised anew. */
 bool ref_tension_bear(RefTension *tension, const RefWarp *warp, RefSteps *steps);
