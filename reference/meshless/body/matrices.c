@@ -111,34 +111,36 @@ static bool reaches(const RefNodes *nodes, int n, const double low[3], const dou
     return true;
 }
 
+/* What of a bin's members reaches into an octant. */
+typedef struct {
+    const RefNodes *nodes;
+    double low[3], high[3];
+    Local *local;
+} Search;
+
+static void note_nodes(void *data, int count, const int *member)
+{
+    Search *search = data;
+    Local *local = search->local;
+    for (int n = 0; n < count; n++)
+        if (local->number[member[n]] < 0 &&
+            reaches(search->nodes, member[n], search->low, search->high)) {
+            local->number[member[n]] = 0;
+            local->node[local->count++] = member[n];
+        }
+}
+
 /* Fills in the octant's nodes: those of the bins that it touches. `number` is -1 of all before. */
 static void find_nodes(const RefOctants *tree, const RefOctant *octant, const RefNodes *nodes,
                        Local *local)
 {
-    double low[3], high[3], x[3], edge = ldexp(nodes->edge, -nodes->depth);
-    long first[3], last[3];
+    Search search = {.nodes = nodes, .local = local};
     for (int d = 0; d < 3; d++) {
-        low[d] = tree->origin[d] + tree->cell * octant->corner[d];
-        high[d] = low[d] + tree->cell * octant->size;
-        first[d] = (long)fmax(floor((low[d] - nodes->low[d]) / edge), 0);
-        last[d] = (long)fmin(floor((high[d] - nodes->low[d]) / edge),
-                             ldexp(nodes->size[d], nodes->depth) - 1);
+        search.low[d] = tree->origin[d] + tree->cell * octant->corner[d];
+        search.high[d] = search.low[d] + tree->cell * octant->size;
     }
     local->count = 0;
-    for (long k = first[2]; k <= last[2]; k++)
-        for (long j = first[1]; j <= last[1]; j++)
-            for (long i = first[0]; i <= last[0]; i++) {
-                int near;
-                x[0] = nodes->low[0] + ((double)i + 0.5) * edge;
-                x[1] = nodes->low[1] + ((double)j + 0.5) * edge;
-                x[2] = nodes->low[2] + ((double)k + 0.5) * edge;
-                const int *member = ref_nodes_near(nodes, x, &near);
-                for (int n = 0; n < near; n++)
-                    if (local->number[member[n]] < 0 && reaches(nodes, member[n], low, high)) {
-                        local->number[member[n]] = 0;
-                        local->node[local->count++] = member[n];
-                    }
-            }
+    ref_nodes_each(nodes, search.low, search.high, note_nodes, &search);
     sm_sort_ints(local->node, local->count);
     for (int n = 0; n < local->count; n++) local->number[local->node[n]] = n;
 }

@@ -6,8 +6,8 @@
 
 static const double least_share = 1.0 / 64, least_distance = 0.25;
 /* Bins of more members than FULL are halved, until they are a third of the smallest reach or
- * DEEPEST times; before that they are SHARE a node. */
-enum { SHARE = 16, FULL = 24, DEEPEST = 24 };
+ * DEEPEST times; before that they are SHARE a node, of a solid SOLID_SHARE. */
+enum { SHARE = 16, SOLID_SHARE = 128, FULL = 24, DEEPEST = 24 };
 
 void ref_nodes_free(RefNodes *nodes)
 {
@@ -116,8 +116,8 @@ static long lay_out(RefNodes *nodes)
         }
         least = fmin(least, nodes->reach[n]);
     }
-    int dims = nodes->plane ? 2 : 3;
-    for (nodes->depth = -1; bins > SHARE * ((double)entries + 4); nodes->depth++) {
+    int dims = nodes->plane ? 2 : 3, share = nodes->plane ? SHARE : SOLID_SHARE;
+    for (nodes->depth = -1; bins > share * ((double)entries + 4); nodes->depth++) {
         bins = 1;
         nodes->edge = ldexp(least / 3, nodes->depth + 1);
         for (int d = 0; d < dims; d++) bins *= ceil((high[d] - nodes->low[d]) / nodes->edge);
@@ -243,6 +243,48 @@ void ref_nodes_bin(RefNodes *nodes)
         settle(&halving, b, 0, place, bin.count, coarse + bin.first);
     }
     free(coarse);
+}
+
+/* A box in edges of bins, and what is called. */
+typedef struct {
+    const RefNodes *nodes;
+    double low[3], high[3];
+    void (*each)(void *data, int count, const int *member);
+    void *data;
+} Walk;
+
+static void walk(const Walk *w, const RefNodesBin *bin, int halved, const double place[3])
+{
+    int dims = w->nodes->plane ? 2 : 3;
+    if (!bin->child) w->each(w->data, bin->count, w->nodes->member + bin->first);
+    for (int part = 0; bin->child && part < 1 << dims; part++) {
+        double at[3] = {0};
+        bool inside = true;
+        for (int d = 0; d < dims; d++) {
+            at[d] = 2 * place[d] + (part >> d & 1);
+            inside &= at[d] >= floor(ldexp(w->low[d], halved + 1)) &&
+                      at[d] <= floor(ldexp(w->high[d], halved + 1));
+        }
+        if (inside) walk(w, w->nodes->bin + bin->child + part, halved + 1, at);
+    }
+}
+
+void ref_nodes_each(const RefNodes *nodes, const double low[3], const double high[3],
+                    void (*each)(void *data, int count, const int *member), void *data)
+{
+    Walk w = {.nodes = nodes, .each = each, .data = data};
+    int first[3], last[3];
+    for (int d = 0; d < 3; d++) {
+        w.low[d] = (low[d] - nodes->low[d]) / nodes->edge;
+        w.high[d] = (high[d] - nodes->low[d]) / nodes->edge;
+        first[d] = (int)fmin(fmax(floor(w.low[d]), 0), nodes->size[d]);
+        last[d] = (int)fmax(fmin(floor(w.high[d]), nodes->size[d] - 1), -1);
+    }
+    for (int z = first[2]; z <= last[2]; z++)
+        for (int y = first[1]; y <= last[1]; y++)
+            for (int x = first[0]; x <= last[0]; x++)
+                walk(&w, nodes->bin + ((long)z * nodes->size[1] + y) * nodes->size[0] + x, 0,
+                     (const double[]){x, y, z});
 }
 
 /* Whether a node stands within `distance` of x. */

@@ -103,4 +103,9 @@ static inline const int *ref_nodes_near(const RefNodes *nodes, const double x[3]
     return nodes->member + bin->first;
 }
 
+/* Calls `each` with the members of every bin that the box from low to high touches; of some nodes
+ * more than once. */
+void ref_nodes_each(const RefNodes *nodes, const double low[3], const double high[3],
+                    void (*each)(void *data, int count, const int *member), void *data);
+
 #endif

@@ -37,8 +37,14 @@ static RefNodes shaken(int side, double shake, double alpha)
     return nodes;
 }
 
+static void count_members(void *data, int count, const int *member)
+{
+    (void)member;
+    *(long *)data += count;
+}
+
 /* Covers of which the smallest are a millionth of the largest, close together: bins know all that
- * covers a place, in order, and are neither many nor full. */
+ * covers a place, in order, say few of them twice, and none says most of them. */
 TEST(bins_are_halved_where_covers_are_small)
 {
     enum { NODES = 500, PLACES = 20000 };
@@ -54,6 +60,10 @@ TEST(bins_are_halved_where_covers_are_small)
         }
         ref_nodes_bin(&nodes);
         assert_true(nodes.most < NODES / 2);
+        long members = 0;
+        const double all[2][3] = {{-9, -9, -9}, {9, 9, 9}};
+        ref_nodes_each(&nodes, all[0], all[1], count_members, &members);
+        assert_in_range(members, NODES, 1000 * NODES);
         for (int p = 0; p < PLACES; p++) {
             double far = pow(10, random_between(&seed, -7, 0)), x[3] = {0};
             for (int d = 0; d < 3 - plane; d++) x[d] = 0.3 + far * random_between(&seed, -1, 1);
