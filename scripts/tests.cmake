@@ -24,6 +24,9 @@ function(add_test_program name source)
   if(LLD AND NOT CMAKE_CROSSCOMPILING)
     target_link_options(test_${name} PRIVATE -fuse-ld=lld)
   endif()
+  if(SHAPEBENCH_SANITIZE) # what takes time is what it tests, which has its own flags
+    target_compile_options(test_${name} PRIVATE -O1)
+  endif()
   target_link_libraries(test_${name} PRIVATE shapebench_flags cmocka ${engines} ${tested})
   target_compile_definitions(test_${name} PRIVATE
     SOURCE_DIR="${CMAKE_SOURCE_DIR}" BINARY_DIR="${CMAKE_BINARY_DIR}")
