@@ -98,6 +98,8 @@ def small(arguments):
         wanted.update({} if "POINTS.xyz" in arguments else ELASTIC, **{"--nodes": "100", "--modes": "8"})
     if command == "run" and SHELLS.intersection(arguments):
         wanted["--nodes"] = "100"
+    if "--map" in arguments:
+        wanted["--nodes"] = "100"
     if command == "tables":
         arguments = [re.sub("^hand(?=$|=)", LIGHT["octree"], word) for word in arguments]
         scene = arguments[arguments.index("--scene") + 1] if "--scene" in arguments else ""

@@ -13,10 +13,20 @@ macro(engines_of source)
   endif()
 endmacro()
 
+# Every test is a program of all that there is: linking is a quarter of building them, by lld an eighth.
+find_program(LLD ld.lld)
+mark_as_advanced(LLD)
+
 # An executable of `source`, linked with all that is tested.
 function(add_test_program name source)
   engines_of(${source})
   add_executable(test_${name} ${source} ${tested_objects})
+  if(LLD AND NOT CMAKE_CROSSCOMPILING)
+    target_link_options(test_${name} PRIVATE -fuse-ld=lld)
+  endif()
+  if(SHAPEBENCH_SANITIZE) # what takes time is what it tests, which has its own flags
+    target_compile_options(test_${name} PRIVATE -O1)
+  endif()
   target_link_libraries(test_${name} PRIVATE shapebench_flags cmocka ${engines} ${tested})
   target_compile_definitions(test_${name} PRIVATE
     SOURCE_DIR="${CMAKE_SOURCE_DIR}" BINARY_DIR="${CMAKE_BINARY_DIR}")

@@ -89,7 +89,7 @@ TEST(a_free_plate_twists_at_the_frequency_of_theory)
     hid_t file = H5Fopen(path_in("plate.vtkhdf"), H5F_ACC_RDONLY, H5P_DEFAULT);
     read_all(file, "VTKHDF/Steps/Values", FRAMES + 1, time);
     for (int f = 0; f <= FRAMES; f++) {
-        char name[16];
+        char name[32];
         snprintf(name, sizeof name, "frames/%d", f);
         read_all(file, name, (size_t)3 * VERTICES, x[f][0]);
     }

@@ -337,9 +337,8 @@ export class App {
         return refused;
     }
 
-    // Where a vertex is in the canvas, in its pixels from its upper left corner.
-    project(side, vertex) {
-        const points = this.engine.surface(side).points;
+    // Where a vertex of the surface's points is in the canvas, in its pixels from its upper left corner.
+    project(side, vertex, points = this.engine.surface(side).points) {
         const box = this.boxes()[side];
         const point = [...points.subarray(3 * vertex, 3 * vertex + 3)];
         const at = this.camera.project(point, box.width / box.height);

@@ -89,7 +89,7 @@ window.shapebench = {
             open: (text, keep) => (keep ? app.open(text, true) : app.visit(text)),
             drawn: (side) => app.picture.readSurface(side),
             showSurface: (side) => app.showSurface(side),
-            project: (side, vertex) => app.project(side, vertex),
+            project: (...of) => app.project(...of),
         });
     }),
 };

@@ -144,10 +144,11 @@ const shares = {}, pixel = new Uint8Array(36), whole = canvas.getBoundingClientR
 shapebench.advance(1);
 for (const side of shapebench.engine.present()) {
     const box = document.getElementById(`view-${side}`).getBoundingClientRect();
-    const scale = canvas.width / whole.width, count = shapebench.engine.surface(side).points.length / 3;
+    const points = shapebench.engine.surface(side).points; // which takes long of a crowd
+    const scale = canvas.width / whole.width, count = points.length / 3;
     let seen = 0, hit = 0;
     for (let i = 0; i < 300; i++) {
-        const at = shapebench.project(side, Math.floor(i * count / 300));
+        const at = shapebench.project(side, Math.floor(i * count / 300), points);
         const x = at.x - (box.left - whole.left) * scale, y = at.y - (box.top - whole.top) * scale;
         if (!(x > 2 && y > 2 && x < box.width * scale - 2 && y < box.height * scale - 2)) continue;
         gl.readPixels(Math.round(at.x) - 1, Math.round(canvas.height - at.y) - 1, 3, 3, gl.RGBA,
