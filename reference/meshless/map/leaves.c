@@ -7,6 +7,8 @@
 /* Of the root of the plane's area: lines that are as near as this meet; and gaps between
  * rectangles, of the longest side. */
 static const double NEAR = 1e-9, GAP = 0.25;
+/* Cylinders that are so many times as wide as high are flat. */
+static const double FLAT = 30;
 /* By this share of the way from a triangle's middle a vertex is before a zero. */
 static const double SHORT = 1e-6;
 
@@ -30,21 +32,32 @@ typedef struct {
     double place[2]; /* where it begins along the side of that above, and of that below */
 } Arc;
 
+/* By how much a leaf is above another: that of zero n inside is number n, those of rims come behind
+ * them. */
+typedef struct {
+    int from, to;
+    double rise;
+} Link;
+
 typedef struct {
     const RefTriangulation *surface;
     double *const *step;
     double near; /* lines that meet are nearer than this */
     const bool *is_zero;
+    int zeros;
+    const int *zero;
     Arc *arc; /* [arcs] */
     Piece *piece;
     int arcs, *first; /* [triangles] a triangle's first piece, or -1 */
     long pieces, room;
+    Link *link; /* of flat cylinders, and arcs; [3 * arcs] */
+    int links;
 } Trace;
 
 void ref_leaves_free(RefLeaves *leaves)
 {
     ref_cylinders_free(&leaves->cylinders);
-    sm_free_all(leaves->middle, leaves->at);
+    sm_free_all(leaves->middle, leaves->at, leaves->lift);
     *leaves = (RefLeaves){.middle = NULL};
 }
 
@@ -285,6 +298,16 @@ static double go_around(Trace *trace, int arc, bool upper, double begin, int whi
     return 0;
 }
 
+/* The number of the leaf that a zero is on. */
+static int level_of(const Trace *trace, int corner)
+{
+    int v = trace->surface->vertex[corner], rim = trace->surface->rim[trace->surface->corner[v]];
+    if (rim >= 0) return trace->zeros + rim;
+    int n = 0;
+    while (trace->zero[n] != v) n++;
+    return n;
+}
+
 /* The cylinder above an arc, which begins there, or the one below it, which a rim is below; its
  * number is `which`. */
 static bool find_cylinder(Trace *trace, int arc, bool below, int which, RefCylinder *cylinder)
@@ -298,6 +321,9 @@ static bool find_cylinder(Trace *trace, int arc, bool below, int which, RefCylin
     if (!(width > 0 && height > 0) || end == -2) return false;
     if (end == -1) return true;
     if (below || trace->arc[end].kind == RIM_BELOW || trace->arc[end].under >= 0) return false;
+    if (width > FLAT * height)
+        trace->link[trace->links++] = (Link){level_of(trace, trace->arc[arc].begin),
+                                             level_of(trace, trace->arc[end].begin), height};
     double other = go_around(trace, end, true, trace->arc[arc].length / 2 - along, which);
     return fabs(other - width) < 1e3 * trace->near;
 }
@@ -361,6 +387,46 @@ static bool find_cylinders(Trace *trace, RefCylinders *cylinders)
     }
     join_cylinders(trace, cylinders);
     return true;
+}
+
+/* Levels of what hangs together by links with `from`, whose own is 0, and is not known. */
+static void spread_level(const Trace *trace, int from, bool *known, double *level)
+{
+    bool changed = !known[from];
+    known[from] = true;
+    while (changed) {
+        changed = false;
+        for (int n = 0; n < 2 * trace->links; n++) {
+            const Link *link = trace->link + n / 2;
+            int a = n % 2 ? link->to : link->from, b = n % 2 ? link->from : link->to;
+            if (!known[a] || known[b]) continue;
+            level[b] = level[a] + (n % 2 ? -link->rise : link->rise);
+            known[b] = changed = true;
+        }
+    }
+}
+
+/* By how much zeros and rims have to rise until flat cylinders have no height; a rim of each group
+ * stays. NULL where none is flat. */
+static double *find_lifts(Trace *trace)
+{
+    const RefTriangulation *surface = trace->surface;
+    if (trace->links == 0) return NULL;
+    for (int n = 0; n < trace->arcs; n++)
+        trace->link[trace->links++] =
+            (Link){level_of(trace, trace->arc[n].begin), level_of(trace, trace->arc[n].end), 0};
+    int count = trace->zeros + surface->rims;
+    bool *known = sm_alloc((size_t)count, sizeof *known);
+    double *level = sm_alloc((size_t)count, sizeof *level);
+    double *lift = sm_alloc((size_t)surface->vertices, sizeof *lift);
+    for (int n = count - 1; n >= 0; n--) spread_level(trace, n, known, level);
+    for (long v = 0; v < surface->vertices; v++) {
+        int corner = surface->corner[v];
+        if (trace->is_zero[v] || surface->rim[corner] >= 0)
+            lift[v] = -level[level_of(trace, corner)];
+    }
+    sm_free_all(known, level);
+    return lift;
 }
 
 static void middle_in(const Trace *trace, int triangle, double middle[2])
@@ -460,11 +526,13 @@ bool ref_leaves_trace(const RefTriangulation *surface, double *const step[2], in
 {
     size_t triangles = (size_t)surface->triangles, vertices = (size_t)surface->vertices;
     bool *is_zero = sm_alloc(vertices, sizeof *is_zero);
-    Trace trace = {.surface = surface, .step = step, .is_zero = is_zero};
+    Trace trace = {
+        .surface = surface, .step = step, .is_zero = is_zero, .zeros = zeros, .zero = zero};
     double area = 0;
     *leaves = (RefLeaves){.middle = sm_alloc(triangles, sizeof(double[2])),
                           .at = sm_alloc(vertices, sizeof(double[2]))};
     trace.arc = sm_alloc(2 * (size_t)zeros, sizeof *trace.arc);
+    trace.link = sm_alloc(6 * (size_t)zeros, sizeof *trace.link);
     trace.first = sm_alloc(triangles, sizeof *trace.first);
     for (size_t t = 0; t < triangles; t++) {
         const double *x = step[0] + 3 * t, *y = step[1] + 3 * t;
@@ -476,7 +544,8 @@ bool ref_leaves_trace(const RefTriangulation *surface, double *const step[2], in
     bool traced = find_arcs(&trace, zeros, zero) && find_cylinders(&trace, &leaves->cylinders) &&
                   place_middles(&trace, leaves);
     if (traced) place_vertices(&trace, leaves);
-    sm_free_all(is_zero, trace.arc, trace.first, trace.piece);
+    if (traced) leaves->lift = find_lifts(&trace);
+    sm_free_all(is_zero, trace.arc, trace.first, trace.piece, trace.link);
     if (!traced) ref_leaves_free(leaves);
     return traced;
 }

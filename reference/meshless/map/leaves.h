@@ -11,6 +11,9 @@ typedef struct {
     RefCylinders cylinders;
     double (*middle)[2]; /* [triangles] in a rectangle */
     double (*at)[2];     /* [vertices] the same */
+    /* [vertices] By how much zeros and the vertices of rims have to rise until there is no cylinder
+     * between zeros that is 30 times as wide as high; NULL: there is none. */
+    double *lift;
 } RefLeaves;
 
 /* Of a form whose zeros are vertices and that turns no triangle over (zeros.h): in the plane the

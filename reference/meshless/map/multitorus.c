@@ -41,21 +41,47 @@ static void scale(const Attempt *attempt)
         for (long c = 0; c < corners; c++) attempt->step[d][c] *= factor;
 }
 
+/* Brings zeros that are nearly on one leaf onto one, so that no cylinder is flat, if that can be.
+ */
+static void make_level(Attempt *attempt, int zeros, const int *zero)
+{
+    RefTriangulation *surface = &attempt->surface;
+    Attempt other = {.step = {NULL}};
+    if (!attempt->leaves.lift) return;
+    for (int d = 0; d < 2; d++)
+        other.step[d] = sm_alloc(3 * (size_t)surface->triangles, sizeof *other.step[d]);
+    if (ref_zeros_lift(surface, attempt->step, zeros, zero, attempt->leaves.lift, other.step) &&
+        ref_leaves_trace(surface, other.step, zeros, zero, &other.leaves)) {
+        Attempt before = *attempt;
+        attempt->leaves = other.leaves;
+        other.leaves = before.leaves;
+        for (int d = 0; d < 2; d++) {
+            attempt->step[d] = other.step[d];
+            other.step[d] = before.step[d];
+        }
+    }
+    attempt_free(&other);
+}
+
+/* What is tried, one after the other, until there is a map. */
+typedef enum { NARROW_ZEROS, ANY_ZEROS, LEVEL_ZEROS, WAYS } Way;
+
 /* False, and nothing to free, where it fails. */
 static bool try(const RefTriangulation *surface, const RefHolomorphic *basis, const double *number,
-                Attempt *attempt)
+                Way way, Attempt *attempt)
 {
     int *zero = sm_alloc(2 * (size_t)ref_zeros_count(surface), sizeof *zero);
     *attempt = (Attempt){.surface = ref_triangulation_copy(surface)};
     for (int d = 0; d < 2; d++)
         attempt->step[d] = sm_alloc(3 * (size_t)surface->triangles, sizeof *attempt->step[d]);
     ref_holomorphic_form(surface, basis, number, attempt->step);
-    int zeros = ref_zeros_place(&attempt->surface, attempt->step, zero);
+    int zeros = ref_zeros_place(&attempt->surface, attempt->step, way == NARROW_ZEROS, zero);
     bool made = zeros > 0;
     if (made) {
         scale(attempt);
         made = ref_leaves_trace(&attempt->surface, attempt->step, zeros, zero, &attempt->leaves);
     }
+    if (made && way == LEVEL_ZEROS) make_level(attempt, zeros, zero);
     free(zero);
     if (!made) attempt_free(attempt);
     return made;
@@ -88,15 +114,14 @@ static double cells_of(const RefCylinders *cylinders)
 }
 
 /* The best of the forms; false where none will do. */
-static bool try_all(const RefTriangulation *surface, const RefHolomorphic *basis, Attempt *best)
+static bool try_all(const RefTriangulation *surface, const RefHolomorphic *basis, int count,
+                    const double *number, const double *score, Way way, Attempt *best)
 {
-    double least = INFINITY, score[TRIED];
-    double *number = sm_alloc((size_t)(TRIED * basis->count), sizeof *number);
-    int count = ref_holomorphic_choose(surface, basis, TRIED, number, score);
+    double least = INFINITY;
     for (int n = 0; n < count; n++) {
         Attempt attempt;
         if (!(score[n] < least)) continue; /* with any cylinders */
-        if (!try(surface, basis, number + n * basis->count, &attempt)) continue;
+        if (!try(surface, basis, number + n * basis->count, way, &attempt)) continue;
         double cells = cells_of(&attempt.leaves.cylinders) / ref_zeros_count(surface);
         double found = score[n] + cells / MANY_CELLS;
         if (!(found < least)) {
@@ -107,7 +132,6 @@ static bool try_all(const RefTriangulation *surface, const RefHolomorphic *basis
         least = found;
         *best = attempt;
     }
-    free(number);
     return isfinite(least);
 }
 
@@ -116,11 +140,16 @@ static SmCode unfold(const RefTriangulation *surface, const char *name, Attempt 
                      SmError *error)
 {
     RefHolomorphic basis;
-    double *weight = ref_harmonic_weights(surface, LEAST_WEIGHT);
+    double score[TRIED], *weight = ref_harmonic_weights(surface, LEAST_WEIGHT);
     SmCode code = ref_holomorphic_create(surface, weight, name, &basis, error);
     free(weight);
     if (code != SM_OK) return code;
-    *found = try_all(surface, &basis, best);
+    double *number = sm_alloc((size_t)(TRIED * basis.count), sizeof *number);
+    int count = ref_holomorphic_choose(surface, &basis, TRIED, number, score);
+    *found = false;
+    for (int way = 0; way < WAYS && !*found; way++)
+        *found = try_all(surface, &basis, count, number, score, way, best);
+    free(number);
     ref_holomorphic_free(&basis);
     return SM_OK;
 }

@@ -393,3 +393,49 @@ TEST(so_are_those_with_holes)
         sm_mesh_free(&mesh);
     }
 }
+
+/* Tori of any size in a row, with round holes anywhere that are apart. */
+static SmMesh tori_anywhere(int tori, int rims, int cells, unsigned from)
+{
+    Tori all = {.tori = tori};
+    for (int n = 0; n < tori; n++) {
+        all.ring[n] = random_between(&from, 0.9, 1.2);
+        all.tube[n] = random_between(&from, 0.32, 0.45);
+        if (n)
+            all.centre[n][0] = all.centre[n - 1][0] + all.ring[n - 1] + all.ring[n] +
+                               random_between(&from, 0, 0.2);
+        all.centre[n][1] = random_between(&from, -0.3, 0.3);
+    }
+    double middle = all.centre[tori - 1][0] / 2, hole[8][3], radius[8];
+    for (int n = 0; n < tori; n++) all.centre[n][0] -= middle;
+    SmMesh mesh = tori_mesh(&all, cells, &from);
+    for (int k = 0; k < rims;) {
+        memcpy(hole[k], mesh.position[random_int(&from, (int)mesh.vertex_count)], sizeof *hole);
+        radius[k] = random_between(&from, 0.32, 0.5);
+        bool apart = true;
+        for (int j = 0; j < k; j++)
+            apart &= sqrt(sm_square_between(hole[j], hole[k])) > radius[j] + radius[k] + 0.2;
+        k += apart;
+    }
+    for (int k = 0; k < rims; k++) punch(hole[k], radius[k], &mesh);
+    sm_mesh_merge(&mesh);
+    return mesh;
+}
+
+/* Of some every form that suits has zeros nearly on one leaf, or one whose vertex is not where a
+ * quadratic function has it: they keep all their handles and rims as well. */
+TEST(no_handle_or_rim_is_lost)
+{
+    needs_solver();
+    static const struct {
+        int genus, rims, cells;
+        unsigned from;
+    } given[] = {{3, 4, 40, 4252699469u}, {4, 3, 45, 476248821u}, {4, 3, 45, 3049328483u}};
+    for (int n = 0; n < 3; n++) {
+        SmMesh mesh = tori_anywhere(given[n].genus, given[n].rims, given[n].cells, given[n].from);
+        RefSurfaceMap map = map_of(&mesh, REF_MAP_HOLED, given[n].genus);
+        assert_int_equal(ref_surface_map_triangles(&map)->rims, given[n].rims);
+        check_cylinders(&mesh, &map);
+        check_and_free(&mesh, &map, 5);
+    }
+}

@@ -5,11 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_AROUND = 64, MOST_MOVES = 8, MOST_ROUNDS = 10 };
+enum { MOST_AROUND = 64, MOST_MOVES = 8, MOST_ROUNDS = 10, MOST_REACH = 16 };
 /* A vertex that has this weight of the triangle around a zero is the zero. */
 static const double CLOSE = 0.7;
 /* Angles of a zero are at most so wide. */
 static const double NARROW = 55 * M_PI / 180;
+/* The sine of an angle that is none in the plane. */
+static const double FLAT = 1e-6;
 
 /* The triangles around a vertex, in its own plane and that of the form, as seen from there; of one
  * on a rim, which is straight in both, from that to that. */
@@ -29,6 +31,7 @@ typedef struct {
     RefTriangulation *surface;
     double **step;
     long *room;                    /* triangles that there is room for in `step` */
+    const bool *level;             /* [vertices] that stay on their leaves beside rims, or NULL */
     double complex model[3], zero; /* the zero's z */
 } Place;
 
@@ -217,55 +220,136 @@ static bool narrow(const Place *place, Star *star)
     return true;
 }
 
-/* How far a place is within the triangles around a vertex, by the nearest of their outer edges,
- * which is `worst`. */
-static double depth(const Star *star, double complex at, int *worst)
+/* How far a place is within the triangles around a vertex, by the nearest of their outer edges. */
+static double depth(const Star *star, double complex at)
 {
     double least = INFINITY;
     for (int k = 0; k < star->count; k++) {
         double complex a = star->w[k] - at;
         double complex way = star->w[(k + 1) % points_of(star)] - star->w[k];
-        double far = cross(a, way) / cabs(way);
-        if (far >= least) continue;
-        least = far;
-        *worst = k;
+        least = fmin(least, cross(a, way) / cabs(way));
     }
     return least;
 }
 
-/* Moves a vertex in the plane away from the nearest of the edges around it, as long as that is too
- * near, one on a rim along that; false where it has nowhere to be. */
+/* The middle of where a vertex may be on its leaf. */
+static double middle_of(const Star *star)
+{
+    double least = -INFINITY, most = INFINITY;
+    for (int k = 0; k < star->count; k++) {
+        double complex way = star->w[(k + 1) % points_of(star)] - star->w[k];
+        double at = cross(star->w[k], way) / cimag(way);
+        if (cimag(way) > 0) most = fmin(most, at);
+        if (cimag(way) < 0) least = fmax(least, at);
+    }
+    return isfinite(least + most) ? (least + most) / 2 : 0;
+}
+
+/* The outer edges of a star, and behind them three of a large triangle. */
+typedef struct {
+    int edges;
+    double complex normal[MOST_AROUND + 3]; /* outwards */
+    double off[MOST_AROUND + 3];            /* from the star's vertex */
+} Outline;
+
+static void draw(const Star *star, Outline *outline)
+{
+    double size = 0;
+    outline->edges = star->count + 3;
+    for (int k = 0; k < star->count; k++) {
+        double complex way = star->w[(k + 1) % points_of(star)] - star->w[k];
+        outline->normal[k] = -I * way / cabs(way);
+        outline->off[k] = cross(star->w[k], way) / cabs(way);
+        size = fmax(size, cabs(star->w[k]));
+    }
+    for (int k = 0; k < 3; k++) {
+        outline->normal[star->count + k] = cexp(2 * M_PI / 3 * k * I);
+        outline->off[star->count + k] = 10 * size;
+    }
+}
+
+static double depth_at(const Outline *outline, int edge, double complex at)
+{
+    return outline->off[edge] - creal(conj(at) * outline->normal[edge]);
+}
+
+/* The place that is as deep within three edges. */
+static double complex centre_of(const Outline *outline, const int edge[3])
+{
+    const double complex *normal = outline->normal;
+    double complex a = normal[edge[1]] - normal[edge[0]], b = normal[edge[2]] - normal[edge[0]];
+    double first = outline->off[edge[1]] - outline->off[edge[0]];
+    double second = outline->off[edge[2]] - outline->off[edge[0]];
+    return -I * (first * b - second * a) / cross(a, b);
+}
+
+/* Takes another edge in place of one of three, so that the place that is deepest within all four is
+ * as deep within those that are left. */
+static void exchange(const Outline *outline, int other, int edge[3])
+{
+    int best[3] = {edge[0], edge[1], edge[2]};
+    double most = -INFINITY;
+    for (int n = 0; n < 3; n++) {
+        int next[3] = {edge[0], edge[1], edge[2]};
+        next[n] = other;
+        double complex at = centre_of(outline, next);
+        double least = fmin(depth_at(outline, other, at), depth_at(outline, edge[n], at));
+        if (!(least > most)) continue;
+        most = least;
+        memcpy(best, next, sizeof best);
+    }
+    memcpy(edge, best, sizeof best);
+}
+
+/* The place that is deepest within the triangles around a vertex: a linear program, whose worst
+ * edge is taken in until it is one of three that are as near. */
+static double complex deepest(const Star *star)
+{
+    Outline outline;
+    draw(star, &outline);
+    int edge[3] = {star->count, star->count + 1, star->count + 2};
+    double complex at = 0;
+    for (int round = 0; round < 2 * outline.edges; round++) {
+        int worst = 0;
+        at = centre_of(&outline, edge);
+        for (int k = 1; k < outline.edges; k++)
+            if (depth_at(&outline, k, at) < depth_at(&outline, worst, at)) worst = k;
+        if (worst == edge[0] || worst == edge[1] || worst == edge[2]) break;
+        exchange(&outline, worst, edge);
+    }
+    return isfinite(cabs(at)) ? at : 0;
+}
+
+/* Moves a vertex in the plane that is too near to one of the edges around it towards where it is
+ * farthest from all, one that stays on its leaf along that, as far as need be; false where it has
+ * nowhere to be. */
 static bool settle(const Place *place, int vertex)
 {
     Star star;
     if (!look_around(place, vertex, &star)) return false;
-    double size = INFINITY, most = -INFINITY;
-    double complex at = 0, best = 0;
+    double size = INFINITY;
     for (int k = 0; k < points_of(&star); k++) size = fmin(size, cabs(star.w[k]));
-    double pace = 0.3 * size;
-    for (int n = 0; n < 400; n++, pace *= 0.98) {
-        int worst = 0;
-        double found = depth(&star, at, &worst);
-        if (found > most) {
-            most = found;
-            best = at;
-        }
-        if (most > 0.1 * size) break;
-        double complex way = star.w[(worst + 1) % points_of(&star)] - star.w[worst];
-        double complex by = pace * I * way / cabs(way);
-        at += star.open ? creal(by) : by;
+    double enough = 0.1 * size, share = 1;
+    if (depth(&star, 0) > enough) return true;
+    bool along = star.open || (place->level && place->level[vertex]);
+    double complex at = along ? middle_of(&star) : deepest(&star);
+    for (int k = 1; k < 7; k++) {
+        double less = share - ldexp(1, -k);
+        if (depth(&star, less * at) > enough) share = less;
     }
+    at *= share;
     for (int k = 0; k < star.count; k++) {
         int out = star.corner[k], in = ref_corner_last(out);
-        set_step(place, out, step_of(place, out) - best);
-        set_step(place, in, step_of(place, in) + best);
+        set_step(place, out, step_of(place, out) - at);
+        set_step(place, in, step_of(place, in) + at);
     }
-    return most > 0;
+    return depth(&star, at) > 0;
 }
 
 /* Makes the zero near a vertex a vertex, and writes that; false where it cannot be. */
-static bool place_zero(Place *place, int vertex, int *zero)
+static bool place_zero(Place *place, int *zero)
 {
+    int vertex = *zero;
     Star star;
     double weight[3];
     int held = -1;
@@ -288,7 +372,9 @@ static bool place_zero(Place *place, int vertex, int *zero)
     else
         vertex = insert(place, &star, held, weight);
     *zero = vertex;
-    return narrow(place, &star) && settle(place, vertex);
+    if (!narrow(place, &star)) return false;
+    settle(place, vertex);
+    return true;
 }
 
 /* The same of a zero on a rim, which is the vertex itself: the rim stays where it is. */
@@ -316,11 +402,12 @@ static int changes(const RefTriangulation *surface, const double *step, int vert
     return count;
 }
 
+/* Or so flat that it is when it is rounded in another place. */
 static bool turned_over(const Place *place, long triangle)
 {
-    long a = 3 * triangle, b = a + 1;
-    const double *x = place->step[0], *y = place->step[1];
-    return !(x[a] * y[b] - x[b] * y[a] > 0);
+    int a = (int)(3 * triangle);
+    double complex from = step_of(place, a), to = step_of(place, a + 1);
+    return !(cross(from, to) > FLAT * cabs(from) * cabs(to));
 }
 
 /* Settles the vertices of triangles that are turned over, which are near the zeros, until none is;
@@ -341,7 +428,7 @@ static bool settle_all(const Place *place)
 }
 
 /* The vertices near zeros; none where those are double or not as many as there should be. */
-static int find_saddles(const RefTriangulation *surface, const double *step, int *saddle)
+static int find_zeros(const RefTriangulation *surface, const double *step, int *zero)
 {
     int wanted = 2 * ref_zeros_count(surface), halves = 0, found = 0;
     for (int v = 0; v < surface->vertices; v++) {
@@ -350,23 +437,78 @@ static int find_saddles(const RefTriangulation *surface, const double *step, int
         if (count < once) continue;
         halves += open ? 1 : 2;
         if (count > once || halves > wanted) return 0;
-        saddle[found++] = v;
+        zero[found++] = v;
     }
     return halves == wanted ? found : 0;
 }
 
-int ref_zeros_place(RefTriangulation *surface, double *step[2], int *zero)
+static bool has(int count, const int *vertex, int wanted)
 {
-    int *saddle = sm_alloc(2 * (size_t)ref_zeros_count(surface), sizeof *saddle);
-    int found = find_saddles(surface, step[1], saddle);
+    for (int n = 0; n < count; n++)
+        if (vertex[n] == wanted) return true;
+    return false;
+}
+
+int ref_zeros_place(RefTriangulation *surface, double *step[2], bool narrow_only, int *zero)
+{
+    int placed = find_zeros(surface, step[1], zero), found = 0;
     long room = surface->triangles;
     Place place = {.surface = surface, .step = step, .room = &room};
-    bool single = found > 0;
-    for (int n = 0; n < found && single; n++) {
-        bool open = surface->rim[surface->corner[saddle[n]]] >= 0;
-        zero[n] = saddle[n];
-        single = open ? place_on_rim(&place, saddle[n]) : place_zero(&place, saddle[n], zero + n);
+    bool single = placed > 0, same = true;
+    for (int n = 0; n < placed && single; n++) {
+        bool open = surface->rim[surface->corner[zero[n]]] >= 0;
+        single = open ? place_on_rim(&place, zero[n]) : place_zero(&place, zero + n);
     }
-    free(saddle);
-    return single && settle_all(&place) ? found : 0;
+    int *at = sm_alloc(2 * (size_t)ref_zeros_count(surface), sizeof *at);
+    if (single && settle_all(&place)) found = find_zeros(surface, step[1], at);
+    for (int n = 0; n < placed; n++)
+        same &= surface->rim[surface->corner[zero[n]]] >= 0 || has(found, at, zero[n]);
+    memcpy(zero, at, (size_t)found * sizeof *at);
+    free(at);
+    return same || !narrow_only ? found : 0;
+}
+
+/* Lifts what is within half of `reach` edges of zeros and rims by as much as these, and from there
+ * on by less. */
+static void lift_around(const RefTriangulation *surface, const bool *level, const double *lift,
+                        int reach, double *step)
+{
+    size_t size = (size_t)surface->vertices;
+    int *ring = sm_alloc(size, sizeof *ring);
+    double *up = sm_alloc(size, sizeof *up);
+    for (size_t v = 0; v < size; v++) {
+        ring[v] = lift[v] != 0;
+        up[v] = lift[v];
+    }
+    for (int n = 1; n < reach; n++)
+        for (int c = 0; c < 3 * surface->triangles; c++) {
+            int a = surface->vertex[c], b = surface->vertex[ref_corner_next(c)];
+            if (ring[a] != n || ring[b] > 0 || level[b]) continue;
+            ring[b] = n + 1;
+            up[b] = up[a];
+        }
+    for (size_t v = 0; v < size; v++)
+        if (2 * (ring[v] - 1) > reach) up[v] *= 2 - 2.0 * (ring[v] - 1) / reach;
+    for (int c = 0; c < 3 * surface->triangles; c++)
+        step[c] += up[surface->vertex[ref_corner_next(c)]] - up[surface->vertex[c]];
+    sm_free_all(ring, up);
+}
+
+bool ref_zeros_lift(RefTriangulation *surface, double *const step[2], int zeros, const int *zero,
+                    const double *lift, double *lifted[2])
+{
+    size_t bytes = 3 * (size_t)surface->triangles * sizeof(double);
+    bool *level = sm_alloc((size_t)surface->vertices, sizeof *level), sound = false;
+    int *now = sm_alloc(2 * (size_t)ref_zeros_count(surface), sizeof *now);
+    Place place = {.surface = surface, .step = lifted, .level = level};
+    for (long v = 0; v < surface->vertices; v++) level[v] = surface->rim[surface->corner[v]] >= 0;
+    for (int n = 0; n < zeros; n++) level[zero[n]] = true;
+    for (int reach = 2; reach <= MOST_REACH && !sound; reach *= 2) {
+        for (int d = 0; d < 2; d++) memcpy(lifted[d], step[d], bytes);
+        lift_around(surface, level, lift, reach, lifted[1]);
+        sound = settle_all(&place) && find_zeros(surface, lifted[1], now) == zeros &&
+                memcmp(now, zero, (size_t)zeros * sizeof *zero) == 0;
+    }
+    sm_free_all(level, now);
+    return sound;
 }
