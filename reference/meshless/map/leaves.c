@@ -462,30 +462,36 @@ static bool same(const Trace *trace, const RefCylinders *cylinders, const double
     return fmin(off, fabs(off - (in->high[0] - in->low[0]))) < near && fabs(a[1] - b[1]) < near;
 }
 
-/* From the middle of the first arc inside to all triangles' middles; and whether all ways lead
- * there. */
+/* The place of one triangle's middle, beside that of the first arc inside. */
+static bool place_root(const Trace *trace, RefLeaves *leaves)
+{
+    const Arc *arc = trace->arc, *behind = trace->arc + trace->arcs;
+    double at[2], middle[2], way[2];
+    while (arc < behind && arc->kind != INSIDE) arc++;
+    if (arc == behind) return false; /* between zeros there is one inside */
+    if (!start_at(trace, (int)(arc - trace->arc), &leaves->root, at)) return false;
+    const RefCylinder *in = leaves->cylinders.cylinder + arc->over;
+    middle_in(trace, leaves->root, middle);
+    for (int d = 0; d < 2; d++) {
+        way[d] = middle[d] - at[d];
+        leaves->start[d] = in->low[d] + (d ? 0 : arc->place[0] + arc->length / 2);
+    }
+    ref_cylinders_walk(&leaves->cylinders, leaves->start, way);
+    return true;
+}
+
+/* From one triangle's middle to all; and whether all ways lead there. */
 static bool place_middles(const Trace *trace, RefLeaves *leaves)
 {
     const RefTriangulation *surface = trace->surface;
     const RefCylinders *cylinders = &leaves->cylinders;
-    const Arc *arc = trace->arc, *behind = trace->arc + trace->arcs;
-    while (arc < behind && arc->kind != INSIDE) arc++;
-    if (arc == behind) return false; /* between zeros there is one inside */
-    int *queue = sm_alloc((size_t)surface->triangles, sizeof *queue), root = 0;
+    int *queue = sm_alloc((size_t)surface->triangles, sizeof *queue);
     bool *seen = sm_alloc((size_t)surface->triangles, sizeof *seen), whole = true;
-    double at[2], middle[2], way[2];
-    if (start_at(trace, (int)(arc - trace->arc), &root, at)) {
-        const RefCylinder *in = cylinders->cylinder + arc->over;
-        middle_in(trace, root, middle);
-        for (int d = 0; d < 2; d++) {
-            way[d] = middle[d] - at[d];
-            leaves->middle[root][d] = in->low[d] + (d ? 0 : arc->place[0] + arc->length / 2);
-        }
-        ref_cylinders_walk(cylinders, leaves->middle[root], way);
-        seen[root] = true;
-        queue[0] = root;
-    }
-    long end = seen[root];
+    double at[2];
+    memcpy(leaves->middle[leaves->root], leaves->start, sizeof leaves->start);
+    seen[leaves->root] = true;
+    queue[0] = leaves->root;
+    long end = 1;
     for (long n = 0; n < end; n++)
         for (int c = 3 * queue[n]; c < 3 * queue[n] + 3; c++) {
             if (surface->twin[c] < 0) continue;
@@ -521,31 +527,50 @@ static void place_vertices(const Trace *trace, RefLeaves *leaves)
     }
 }
 
+/* What is known before leaves are followed; `is_zero` is the caller's to free. */
+static Trace begin_trace(const RefTriangulation *surface, double *const step[2], int zeros,
+                         const int *zero, bool *is_zero)
+{
+    double area = 0;
+    for (long c = 0; c < 3 * surface->triangles; c += 3)
+        area += (step[0][c] * step[1][c + 1] - step[0][c + 1] * step[1][c]) / 2;
+    for (int z = 0; z < zeros; z++) is_zero[zero[z]] = true;
+    return (Trace){.surface = surface,
+                   .step = step,
+                   .near = NEAR * sqrt(area),
+                   .is_zero = is_zero,
+                   .zeros = zeros,
+                   .zero = zero};
+}
+
 bool ref_leaves_trace(const RefTriangulation *surface, double *const step[2], int zeros,
                       const int *zero, RefLeaves *leaves)
 {
-    size_t triangles = (size_t)surface->triangles, vertices = (size_t)surface->vertices;
-    bool *is_zero = sm_alloc(vertices, sizeof *is_zero);
-    Trace trace = {
-        .surface = surface, .step = step, .is_zero = is_zero, .zeros = zeros, .zero = zero};
-    double area = 0;
-    *leaves = (RefLeaves){.middle = sm_alloc(triangles, sizeof(double[2])),
-                          .at = sm_alloc(vertices, sizeof(double[2]))};
+    size_t triangles = (size_t)surface->triangles;
+    bool *is_zero = sm_alloc((size_t)surface->vertices, sizeof *is_zero);
+    Trace trace = begin_trace(surface, step, zeros, zero, is_zero);
+    *leaves = (RefLeaves){.middle = NULL};
     trace.arc = sm_alloc(2 * (size_t)zeros, sizeof *trace.arc);
     trace.link = sm_alloc(6 * (size_t)zeros, sizeof *trace.link);
     trace.first = sm_alloc(triangles, sizeof *trace.first);
-    for (size_t t = 0; t < triangles; t++) {
-        const double *x = step[0] + 3 * t, *y = step[1] + 3 * t;
-        area += (x[0] * y[1] - x[1] * y[0]) / 2;
-        trace.first[t] = -1;
-    }
-    trace.near = NEAR * sqrt(area);
-    for (int z = 0; z < zeros; z++) is_zero[zero[z]] = true;
+    for (size_t t = 0; t < triangles; t++) trace.first[t] = -1;
     bool traced = find_arcs(&trace, zeros, zero) && find_cylinders(&trace, &leaves->cylinders) &&
-                  place_middles(&trace, leaves);
-    if (traced) place_vertices(&trace, leaves);
+                  place_root(&trace, leaves);
     if (traced) leaves->lift = find_lifts(&trace);
     sm_free_all(is_zero, trace.arc, trace.first, trace.piece, trace.link);
     if (!traced) ref_leaves_free(leaves);
     return traced;
+}
+
+bool ref_leaves_place(const RefTriangulation *surface, double *const step[2], int zeros,
+                      const int *zero, RefLeaves *leaves)
+{
+    bool *is_zero = sm_alloc((size_t)surface->vertices, sizeof *is_zero);
+    Trace trace = begin_trace(surface, step, zeros, zero, is_zero);
+    leaves->middle = sm_alloc((size_t)surface->triangles, sizeof *leaves->middle);
+    leaves->at = sm_alloc((size_t)surface->vertices, sizeof *leaves->at);
+    bool placed = place_middles(&trace, leaves);
+    if (placed) place_vertices(&trace, leaves);
+    free(is_zero);
+    return placed;
 }

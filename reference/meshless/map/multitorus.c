@@ -20,6 +20,7 @@ static const double LEAST_WEIGHT = 1e-4;
 typedef struct {
     RefTriangulation surface;
     double *step[2];
+    int zeros, *zero;
     RefLeaves leaves;
 } Attempt;
 
@@ -27,7 +28,7 @@ static void attempt_free(Attempt *attempt)
 {
     ref_triangulation_free(&attempt->surface);
     ref_leaves_free(&attempt->leaves);
-    for (int d = 0; d < 2; d++) free(attempt->step[d]);
+    sm_free_all(attempt->step[0], attempt->step[1], attempt->zero);
 }
 
 /* Scales the plane to the surface's area. */
@@ -43,46 +44,53 @@ static void scale(const Attempt *attempt)
 
 /* Brings zeros that are nearly on one leaf onto one, so that no cylinder is flat, if that can be.
  */
-static void make_level(Attempt *attempt, int zeros, const int *zero)
+static void make_level(Attempt *attempt)
 {
     RefTriangulation *surface = &attempt->surface;
-    Attempt other = {.step = {NULL}};
-    if (!attempt->leaves.lift) return;
-    for (int d = 0; d < 2; d++)
-        other.step[d] = sm_alloc(3 * (size_t)surface->triangles, sizeof *other.step[d]);
-    if (ref_zeros_lift(surface, attempt->step, zeros, zero, attempt->leaves.lift, other.step) &&
-        ref_leaves_trace(surface, other.step, zeros, zero, &other.leaves)) {
-        Attempt before = *attempt;
-        attempt->leaves = other.leaves;
-        other.leaves = before.leaves;
-        for (int d = 0; d < 2; d++) {
-            attempt->step[d] = other.step[d];
-            other.step[d] = before.step[d];
-        }
+    const int *zero = attempt->zero;
+    RefLeaves leaves;
+    double *step[2], *const *from = attempt->step;
+    for (int d = 0; d < 2; d++) step[d] = sm_alloc(3 * (size_t)surface->triangles, sizeof *step[d]);
+    bool level = ref_zeros_lift(surface, from, attempt->zeros, zero, attempt->leaves.lift, step) &&
+                 ref_leaves_trace(surface, step, attempt->zeros, zero, &leaves);
+    for (int d = 0; d < 2; d++) {
+        free(level ? attempt->step[d] : step[d]);
+        if (level) attempt->step[d] = step[d];
     }
-    attempt_free(&other);
+    if (!level) return;
+    ref_leaves_free(&attempt->leaves);
+    attempt->leaves = leaves;
 }
 
 /* What is tried, one after the other, until there is a map. */
 typedef enum { NARROW_ZEROS, ANY_ZEROS, LEVEL_ZEROS, WAYS } Way;
+typedef struct {
+    int count;
+    double *number, score[TRIED];
+    bool hopeless[TRIED]; /* no later way will do */
+} Forms;
 
 /* False, and nothing to free, where it fails. */
-static bool try(const RefTriangulation *surface, const RefHolomorphic *basis, const double *number,
+static bool try(const RefTriangulation *surface, const RefHolomorphic *basis, Forms *forms, int n,
                 Way way, Attempt *attempt)
 {
-    int *zero = sm_alloc(2 * (size_t)ref_zeros_count(surface), sizeof *zero);
-    *attempt = (Attempt){.surface = ref_triangulation_copy(surface)};
+    bool narrowed;
+    *attempt =
+        (Attempt){.surface = ref_triangulation_copy(surface),
+                  .zero = sm_alloc(2 * (size_t)ref_zeros_count(surface), sizeof *attempt->zero)};
     for (int d = 0; d < 2; d++)
         attempt->step[d] = sm_alloc(3 * (size_t)surface->triangles, sizeof *attempt->step[d]);
-    ref_holomorphic_form(surface, basis, number, attempt->step);
-    int zeros = ref_zeros_place(&attempt->surface, attempt->step, way == NARROW_ZEROS, zero);
-    bool made = zeros > 0;
+    ref_holomorphic_form(surface, basis, forms->number + n * basis->count, attempt->step);
+    attempt->zeros = ref_zeros_place(&attempt->surface, attempt->step, attempt->zero, &narrowed);
+    bool placed = attempt->zeros > 0, made = placed && (narrowed || way != NARROW_ZEROS);
     if (made) {
         scale(attempt);
-        made = ref_leaves_trace(&attempt->surface, attempt->step, zeros, zero, &attempt->leaves);
+        made = ref_leaves_trace(&attempt->surface, attempt->step, attempt->zeros, attempt->zero,
+                                &attempt->leaves);
     }
-    if (made && way == LEVEL_ZEROS) make_level(attempt, zeros, zero);
-    free(zero);
+    bool flat = made && attempt->leaves.lift;
+    forms->hopeless[n] = way == NARROW_ZEROS ? !placed : !flat;
+    if (flat && way == LEVEL_ZEROS) make_level(attempt);
     if (!made) attempt_free(attempt);
     return made;
 }
@@ -114,17 +122,18 @@ static double cells_of(const RefCylinders *cylinders)
 }
 
 /* The best of the forms; false where none will do. */
-static bool try_all(const RefTriangulation *surface, const RefHolomorphic *basis, int count,
-                    const double *number, const double *score, Way way, Attempt *best)
+static bool try_all(const RefTriangulation *surface, const RefHolomorphic *basis, Forms *forms,
+                    Way way, Attempt *best)
 {
     double least = INFINITY;
-    for (int n = 0; n < count; n++) {
+    for (int n = 0; n < forms->count; n++) {
         Attempt attempt;
-        if (!(score[n] < least)) continue; /* with any cylinders */
-        if (!try(surface, basis, number + n * basis->count, way, &attempt)) continue;
+        if (forms->hopeless[n] || !(forms->score[n] < least)) continue; /* with any cylinders */
+        if (!try(surface, basis, forms, n, way, &attempt)) continue;
         double cells = cells_of(&attempt.leaves.cylinders) / ref_zeros_count(surface);
-        double found = score[n] + cells / MANY_CELLS;
-        if (!(found < least)) {
+        double found = forms->score[n] + cells / MANY_CELLS;
+        if (!(found < least) || !ref_leaves_place(&attempt.surface, attempt.step, attempt.zeros,
+                                                  attempt.zero, &attempt.leaves)) {
             attempt_free(&attempt);
             continue;
         }
@@ -140,16 +149,17 @@ static SmCode unfold(const RefTriangulation *surface, const char *name, Attempt 
                      SmError *error)
 {
     RefHolomorphic basis;
-    double score[TRIED], *weight = ref_harmonic_weights(surface, LEAST_WEIGHT);
+    Forms forms = {.count = 0};
+    double *weight = ref_harmonic_weights(surface, LEAST_WEIGHT);
     SmCode code = ref_holomorphic_create(surface, weight, name, &basis, error);
     free(weight);
     if (code != SM_OK) return code;
-    double *number = sm_alloc((size_t)(TRIED * basis.count), sizeof *number);
-    int count = ref_holomorphic_choose(surface, &basis, TRIED, number, score);
+    forms.number = sm_alloc((size_t)(TRIED * basis.count), sizeof *forms.number);
+    forms.count = ref_holomorphic_choose(surface, &basis, TRIED, forms.number, forms.score);
     *found = false;
     for (int way = 0; way < WAYS && !*found; way++)
-        *found = try_all(surface, &basis, count, number, score, way, best);
-    free(number);
+        *found = try_all(surface, &basis, &forms, way, best);
+    free(forms.number);
     ref_holomorphic_free(&basis);
     return SM_OK;
 }
@@ -157,7 +167,7 @@ static SmCode unfold(const RefTriangulation *surface, const char *name, Attempt 
 SmCode ref_multitorus_unfold(RefTriangulation *surface, const char *name, double *step[2],
                              RefLeaves *leaves, SmError *error)
 {
-    Attempt best;
+    Attempt best = {.zeros = 0};
     bool found;
     int forms = 2 * surface->genus + surface->rims;
     if (forms > MOST_FORMS)
@@ -184,6 +194,7 @@ SmCode ref_multitorus_unfold(RefTriangulation *surface, const char *name, double
                        "over or have cylinders that are too thin: give it more triangles, close "
                        "some holes, or cut handles",
                        name, surface->genus, surface->rims);
+    free(best.zero);
     ref_triangulation_free(surface);
     *surface = best.surface;
     *leaves = best.leaves;

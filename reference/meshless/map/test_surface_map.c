@@ -488,7 +488,7 @@ TEST(real_meshes_have_maps)
                   {"torus.obj", REF_MAP_TORUS, 1, 3},
                   {"bad_hourglass_one_hole.stl", REF_MAP_SPHERE, 4, 15},
                   {"bad_self_intersecting_tube.obj", REF_MAP_SPHERE, 0.5, 6},
-                  {"liver_ct_downsample.stl", REF_MAP_TORUS, 7, 30}};
+                  {"liver_ct_downsample.stl", REF_MAP_MULTITORUS, 7, 30}};
     const char *folder = getenv("SHAPEBENCH_MESHES");
     needs_solver();
     needs(folder, "SHAPEBENCH_MESHES names no folder of meshes");
@@ -503,7 +503,7 @@ TEST(real_meshes_have_maps)
         RefSurfaceMap map = map_of(&mesh, wanted[n].kind);
         if (map.angle_median > wanted[n].median || map.angle_95 > wanted[n].most)
             fail_msg("%s: %g and %g degrees", path, map.angle_median, map.angle_95);
-        check_seams(&map);
+        if (!map.chart.cylinders) check_seams(&map);
         ref_surface_map_free(&map);
         sm_mesh_free(&mesh);
     }

@@ -10,8 +10,8 @@ enum { MOST_AROUND = 64, MOST_MOVES = 8, MOST_ROUNDS = 10, MOST_REACH = 16 };
 static const double CLOSE = 0.7;
 /* Angles of a zero are at most so wide. */
 static const double NARROW = 55 * M_PI / 180;
-/* The sine of an angle that is none in the plane. */
-static const double FLAT = 1e-6;
+/* The sine of an angle that is none in the plane, and the share of the plane that is no area. */
+static const double FLAT = 1e-6, TINY = 1e-26;
 
 /* The triangles around a vertex, in its own plane and that of the form, as seen from there; of one
  * on a rim, which is straight in both, from that to that. */
@@ -402,12 +402,21 @@ static int changes(const RefTriangulation *surface, const double *step, int vert
     return count;
 }
 
-/* Or so flat that it is when it is rounded in another place. */
-static bool turned_over(const Place *place, long triangle)
+static double twice_area(const Place *place, long triangle)
+{
+    int a = (int)(3 * triangle);
+    return cross(step_of(place, a), step_of(place, a + 1));
+}
+
+/* Or so flat, or with no more than `least` of twice an area, that it may be when it is rounded in
+ * another place. */
+static bool turned_over(const Place *place, long triangle, double least)
 {
     int a = (int)(3 * triangle);
     double complex from = step_of(place, a), to = step_of(place, a + 1);
-    return !(cross(from, to) > FLAT * cabs(from) * cabs(to));
+    double twice = twice_area(place, triangle);
+    double squares = creal(conj(from) * from) * creal(conj(to) * to);
+    return !(twice > least && twice * twice > FLAT * FLAT * squares);
 }
 
 /* Settles the vertices of triangles that are turned over, which are near the zeros, until none is;
@@ -416,10 +425,12 @@ static bool settle_all(const Place *place)
 {
     const RefTriangulation *surface = place->surface;
     bool any = true;
+    double whole = 0;
+    for (long t = 0; t < surface->triangles; t++) whole += twice_area(place, t);
     for (int round = 0; round < MOST_ROUNDS && any; round++) {
         any = false;
         for (long t = 0; t < surface->triangles; t++)
-            for (int i = 0; i < 3 && turned_over(place, t); i++) {
+            for (int i = 0; i < 3 && turned_over(place, t, TINY * whole); i++) {
                 any = true;
                 settle(place, surface->vertex[3 * t + i]);
             }
@@ -449,23 +460,24 @@ static bool has(int count, const int *vertex, int wanted)
     return false;
 }
 
-int ref_zeros_place(RefTriangulation *surface, double *step[2], bool narrow_only, int *zero)
+int ref_zeros_place(RefTriangulation *surface, double *step[2], int *zero, bool *narrowed)
 {
     int placed = find_zeros(surface, step[1], zero), found = 0;
     long room = surface->triangles;
     Place place = {.surface = surface, .step = step, .room = &room};
-    bool single = placed > 0, same = true;
+    bool single = placed > 0;
     for (int n = 0; n < placed && single; n++) {
         bool open = surface->rim[surface->corner[zero[n]]] >= 0;
         single = open ? place_on_rim(&place, zero[n]) : place_zero(&place, zero + n);
     }
     int *at = sm_alloc(2 * (size_t)ref_zeros_count(surface), sizeof *at);
     if (single && settle_all(&place)) found = find_zeros(surface, step[1], at);
+    *narrowed = true;
     for (int n = 0; n < placed; n++)
-        same &= surface->rim[surface->corner[zero[n]]] >= 0 || has(found, at, zero[n]);
+        *narrowed &= surface->rim[surface->corner[zero[n]]] >= 0 || has(found, at, zero[n]);
     memcpy(zero, at, (size_t)found * sizeof *at);
     free(at);
-    return same || !narrow_only ? found : 0;
+    return found;
 }
 
 /* Lifts what is within half of `reach` edges of zeros and rims by as much as these, and from there

@@ -19,11 +19,11 @@ static inline int ref_zeros_count(const RefTriangulation *surface)
 /* Puts a vertex at every zero but where one is close, halves edges across from it until its angles
  * are narrow, and moves vertices in the plane to where no triangle around is turned over; new ones
  * get what a quadratic function near the zero has. `step`, [2][3 * triangles] from malloc(), grows
- * with the surface. The zero may then be at a vertex beside the one it was looked for at: that will
- * do but if `narrow_only`. Writes the zeros' vertices into `zero`, [2 * ref_zeros_count()], rising,
- * and returns how many; 0, and everything as it may be, where zeros are double or a triangle is
- * turned over all the same. O(triangles). */
-int ref_zeros_place(RefTriangulation *surface, double *step[2], bool narrow_only, int *zero);
+ * with the surface. A zero inside may then be at a vertex beside the one it was looked for at,
+ * whose angles may be wide: `narrowed` says that none is. Writes the zeros' vertices into `zero`,
+ * [2 * ref_zeros_count()], rising, and returns how many; 0, and everything as it may be, where
+ * zeros are double or a triangle is turned over all the same. O(triangles). */
+int ref_zeros_place(RefTriangulation *surface, double *step[2], int *zero, bool *narrowed);
 
 /* Lifts zeros, and rims as a whole, by `lift`, [vertices], and what is near them, farther and
  * farther around, until no triangle is turned over and zeros are where they were: writes that into
