@@ -2,6 +2,9 @@
 
 #include <math.h>
 
+const double ref_gauss_three_at[3] = {-0.38729833462074169, 0, 0.38729833462074169};
+const double ref_gauss_three_weight[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
+
 /* Legendre's polynomial of this order at x, and its slope. */
 static long double legendre(int order, long double x, long double *slope)
 {

@@ -37,3 +37,11 @@ TEST(it_is_the_one_of_tables)
         gsl_integration_glfixed_table_free(table);
     }
 }
+
+TEST(the_rule_of_three_is_at_hand)
+{
+    double at[3], weight[3];
+    ref_gauss_rule(3, at, weight);
+    assert_memory_equal(at, ref_gauss_three_at, sizeof at);
+    assert_memory_equal(weight, ref_gauss_three_weight, sizeof weight);
+}

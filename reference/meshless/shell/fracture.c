@@ -20,12 +20,11 @@ static void find_principal(RefFaceStress *stress)
     const double *s = stress->sigma, *g = stress->metric;
     double mixed[2][2] = {{s[0] * g[0] + s[2] * g[2], s[0] * g[2] + s[2] * g[1]},
                           {s[2] * g[0] + s[1] * g[2], s[2] * g[2] + s[1] * g[1]}};
-    double half = (mixed[0][0] + mixed[1][1]) / 2, off = (mixed[0][0] - mixed[1][1]) / 2;
-    double root = sqrt(fmax(off * off + mixed[0][1] * mixed[1][0], 0));
-    double v[2] = {mixed[0][1], half + root - mixed[0][0]};
-    double w[2] = {half + root - mixed[1][1], mixed[1][0]};
+    double principal = ref_thin_principal((const double(*)[2])mixed);
+    double v[2] = {mixed[0][1], principal - mixed[0][0]};
+    double w[2] = {principal - mixed[1][1], mixed[1][0]};
     if (hypot(w[0], w[1]) > hypot(v[0], v[1])) memcpy(v, w, sizeof v);
-    stress->principal = half + root;
+    stress->principal = principal;
     stress->along[0] = -(g[2] * v[0] + g[1] * v[1]);
     stress->along[1] = g[0] * v[0] + g[2] * v[1];
     double length = hypot(stress->along[0], stress->along[1]);

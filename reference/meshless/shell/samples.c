@@ -7,12 +7,10 @@
 #include "../../../lib/csr.h"
 #include "../../../lib/isa.h"
 #include "../body/covers.h"
+#include "../body/gauss_rule.h"
 
 static const double MOST_SLOPE = 6, MOST_SECOND = 50;
 enum { ORDER = 3, PARTS = 2, ALONG = ORDER * PARTS };
-/* ref_gauss_rule(ORDER). */
-static const double point[ORDER] = {-0.38729833462074169, 0, 0.38729833462074169};
-static const double weight[ORDER] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
 _Static_assert(PARTS == 2, "of two parts the second begins at 1");
 _Static_assert((int)ALONG == (int)REF_GRID_SIDE && (int)ALONG == (int)REF_CELL_SIDE, "one grid");
 
@@ -28,8 +26,10 @@ void ref_samples_grid(const RefQuadtree *tree, long cell, double at[2][REF_GRID_
     double middle[2], edge[2];
     ref_quadtree_cell(tree, tree->cell + cell, middle, edge);
     for (int d = 0; d < 2; d++)
-        for (int i = 0; i < ALONG; i++)
-            at[d][i] = middle[d] + edge[d] * ((i / ORDER + 0.5 + point[i % ORDER]) / PARTS - 0.5);
+        for (int i = 0; i < ALONG; i++) {
+            double share = i / ORDER + 0.5 + ref_gauss_three_at[i % ORDER];
+            at[d][i] = middle[d] + edge[d] * (share / PARTS - 0.5);
+        }
 }
 
 /* Appends a cell's points. */
@@ -43,7 +43,7 @@ static void place(const RefQuadtree *tree, long cell, RefSamples *samples)
         double area = edge[0] * edge[1] / (PARTS * PARTS);
         for (int d = 0; d < 2; d++) {
             samples->theta[samples->count][d] = at[d][which[d]];
-            area *= weight[which[d] % ORDER];
+            area *= ref_gauss_three_weight[which[d] % ORDER];
         }
         samples->weight[samples->count] = area;
     }

@@ -6,8 +6,11 @@
 
 #include "../../../lib/engine/boundary.h"
 #include "../../../lib/vector.h"
+#include "thin.h"
 
 enum { PLACES = REF_WARP_PLACES, SLACK = 10 };
+/* Of how much more than there is steps bear too much: what G takes from motion is felt then. */
+static const double TOO_MUCH = 8;
 
 #define CONST(array) ((const double(*)[3])(array))
 
@@ -48,13 +51,8 @@ static double pull_on_waves(const RefWarp *warp, long at, double stiffness, doub
         for (int d = 0; d < 3; d++) now[d] = sm_dot(R + 3 * d, s);
         for (int k = 0; k < 2; k++) m[k][l] = sm_dot(f[k], now) / area;
     }
-    double half = (m[0][0] + m[1][1]) / 2, off = (m[0][0] - m[1][1]) / 2;
-    double principal = half + sqrt(fmax(off * off + m[0][1] * m[1][0], 0));
-    return fmax(principal, 0) + tug * tug / stiffness;
+    return fmax(ref_thin_principal((const double(*)[2])m), 0) + tug * tug / stiffness;
 }
-
-/* Of how much more than there is steps bear too much: what G takes from motion is felt then. */
-static const double TOO_MUCH = 8;
 
 /* T' of all places, and what of it waves feel; returns how far the surface is stretched most, 1 for
  * not at all. */

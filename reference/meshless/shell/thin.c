@@ -47,6 +47,12 @@ bool ref_thin_is_stiff(const RefFrame *frame, double area, double trace)
            frame->inverse[0] + frame->inverse[1] < MOST_TRACE * trace;
 }
 
+double ref_thin_principal(const double mixed[2][2])
+{
+    double half = (mixed[0][0] + mixed[1][1]) / 2, off = (mixed[0][0] - mixed[1][1]) / 2;
+    return half + sqrt(fmax(off * off + mixed[0][1] * mixed[1][0], 0));
+}
+
 /* Of the strains 11, 22, and 12 twice. */
 static const double times[3] = {1, 1, 2};
 

@@ -55,6 +55,9 @@ void ref_element_free(RefElement *element);
  * plane. */
 bool ref_thin_is_stiff(const RefFrame *frame, double area, double trace);
 
+/* The larger eigenvalue of a tensor by its mixed parts, T^k_l. */
+double ref_thin_principal(const double mixed[2][2]);
+
 /* The strains, three of membrane (11, 22, twice 12) and three of bending, of a displacement whose
  * value and derivatives along axis d are sum[d], as functions' parts. */
 void ref_thin_strains(const RefFrame *frame, const double sum[3][6], double strain[6]);
