@@ -21,6 +21,32 @@ static void runs(const char *arguments)
     free(result);
 }
 
+static void load(const char *name, BenchCampaign *sweep)
+{
+    SmError error;
+    if (bench_campaign_load(path_in(name), &bench_sweep_type, sweep, &error))
+        fail_msg("%s", error.text);
+}
+
+static BenchPoint *point(const BenchCampaign *sweep, long i)
+{
+    return bench_campaign_at(sweep, i);
+}
+
+/* whole.h5 with times of our own: where others take the processors a point has none, and which is
+ * the cheapest is the machine's to say. */
+static void set_times(void)
+{
+    BenchCampaign sweep;
+    load("whole.h5", &sweep);
+    for (int i = 0; i < sweep.count; i++)
+        point(&sweep, i)->total_ms = point(&sweep, i)->total_low_ms =
+            point(&sweep, i)->total_high_ms = 1 + i;
+    SmError error;
+    if (bench_campaign_store(path_in("timed.h5"), &sweep, &error)) fail_msg("%s", error.text);
+    bench_campaign_free(&sweep);
+}
+
 static int set_up(void **state)
 {
     if (make_folder(state)) return -1;
@@ -35,19 +61,8 @@ static int set_up(void **state)
                            "octree = { levels = 1; };\n");
     write_text("noise.h5", "no HDF5\n");
     runs(SMALL " -o whole.h5");
+    set_times();
     return 0;
-}
-
-static void load(const char *name, BenchCampaign *sweep)
-{
-    SmError error;
-    if (bench_campaign_load(path_in(name), &bench_sweep_type, sweep, &error))
-        fail_msg("%s", error.text);
-}
-
-static BenchPoint *point(const BenchCampaign *sweep, long i)
-{
-    return bench_campaign_at(sweep, i);
 }
 
 /* Is the field the same in every run? The state in which goals are checked depends on how many
@@ -245,7 +260,7 @@ TEST(a_recommended_command_gives_that_w)
                                          "regions: w = 6 x the node's edge, epsilon 0"};
     Result *result = malloc(sizeof *result);
     char command[2][256];
-    run("sweep whole.h5 --deviation 100", result);
+    run("sweep timed.h5 --deviation 100", result);
     static const char before[] = "\n  shapebench ";
     const char *at = result->out;
     for (int c = 0; c < 2; c++) {
@@ -267,7 +282,7 @@ TEST(a_recommended_command_gives_that_w)
 TEST(tables_in_every_format)
 {
     Result *result = malloc(sizeof *result);
-    run("sweep whole.h5 --deviation 100", result);
+    run("sweep timed.h5 --deviation 100", result);
     assert_int_equal(result->code, 0);
     assert_non_null(strstr(result->out, "3 of 3 points"));
     assert_non_null(strstr(result->out, "octree: for a deviation of at most 100% take w 6 "));
@@ -279,7 +294,7 @@ TEST(tables_in_every_format)
     }
     assert_int_equal(lines, 4);
     assert_int_equal(commas, 36 + 4 - 1); /* a column a member, five of the stages */
-    run("sweep whole.h5 --format json --recommend", result);
+    run("sweep timed.h5 --format json --recommend", result);
     assert_non_null(strstr(result->err, "fastlsm: whatever is cheapest take w 6 (cells)"));
     json_t *root = json_loads(result->out, 0, NULL);
     assert_int_equal(json_array_size(json_object_get(root, "points")), 3);
