@@ -188,12 +188,12 @@ static void time_sums(const BenchExperiment *of, TimedBody *body, int points)
     }
     int w = of->scene->params.w;
     double side = bench_structure_side(&of->body->voxels, w);
-    bench_curve_sample(of->curve, side, ns, row.repeats, BENCH_LOW, points);
-    if (row.busy) {
+    if (row.busy) { /* of which there may be no sample */
         of->curve->busy = of->curve->valid;
         bench_curve_fail(of->curve, "w = %d, %s: others took %.0f%% of its processor", w, summation,
                          row.lost_percent);
-    }
+    } else
+        bench_curve_sample(of->curve, side, ns, row.repeats, BENCH_LOW, points);
     free(ns);
     bench_row_free(&row);
 }

@@ -255,7 +255,7 @@ static void check_busy(const BenchMeasure *measure, const BenchInstant *start, B
     BenchInstant end = bench_instant_end(1);
     double lost = bench_instant_lost(start, &end);
     if (!kinds[measure->experiment].timed || lost <= 0.25) return;
-    curve->busy = curve->valid;
+    curve->busy |= curve->valid; /* or was found to be */
     bench_curve_fail(curve, "others took %.0f%% of its processor (load average %.1f)", 100 * lost,
                      bench_load_average());
 }

@@ -66,7 +66,7 @@ class Results(unittest.TestCase):
         with h5py.File(self.at("rows.h5")) as file:
             self.assertEqual(set(rows.columns) - {"name", "stage", "total"}, set(file["rows/000"].attrs))
             np.testing.assert_array_equal(rows["total"][0], file["rows/000/total"])
-            self.assertEqual(rows["total_ms"][0], file["rows/000"].attrs["total_ms"])
+            np.testing.assert_equal(rows["total_ms"][0], file["rows/000"].attrs["total_ms"])  # none of a busy row
             self.assertEqual(read.groups["machine"]["cpu"], file["machine"].attrs["cpu"].decode())
         row = next(iter(rows))
         self.assertEqual((row["engine"], row["particles"]), ("fastlsm", rows["particles"][0]))

@@ -87,8 +87,13 @@ class Report(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = tempfile.mkdtemp(prefix="shapebench_report_")
         cls.rows = os.path.join(cls.folder, "rows.h5")
-        done = shapebench("tables", "--scene", "penguin", "--repeats", "2", "-o", cls.rows)
-        assert done.returncode == 0, done.stderr
+        for _ in range(20):  # until there are times
+            done = shapebench("tables", "--scene", "penguin", "--repeats", "2", "--overwrite", "-o", cls.rows)
+            assert done.returncode == 0, done.stderr
+            if "BUSY" not in done.stdout:
+                return
+        print("skipped: other programs take the processors: no row has times")
+        sys.exit(77)
 
     @classmethod
     def tearDownClass(cls):
