@@ -101,28 +101,47 @@ static double step(const double place[3][3], const double normal[3][3], const do
     return sqrt(sm_dot(off, off));
 }
 
-/* How far o leads out of the reach: of a cell's edges along the parameters, and of `height` up. */
-static double beyond(const double o[3], const double edge[2], double height)
+static bool is_within(const double o[3], const double reach[3])
 {
-    return fmax(fmax(fabs(o[0]) / edge[0], fabs(o[1]) / edge[1]), fabs(o[2]) / height);
+    for (int k = 0; k < 3; k++)
+        if (!(fabs(o[k]) <= REF_FOOT_WITHIN * reach[k])) return false;
+    return true;
 }
 
-/* The offsets, or where Newton's steps do not find them within reach, those in the frame at the
- * place: the first step's, so much of them as is. */
+/* Of a cell's edges along the parameters and of `height` up; and no offset leads farther than twice
+ * as far as x is from the place. */
+static void find_reach(const double place[3][3], const double normal[3], const double x[3],
+                       const double edge[2], double height, double reach[3])
+{
+    double most = 2 * sqrt(sm_square_between(x, place[0])) + REF_FOOT_NEAR * height;
+    for (int k = 0; k < 2; k++)
+        reach[k] = fmin(edge[k], most / sqrt(sm_dot(place[1 + k], place[1 + k])));
+    reach[2] = fmin(height, most / sqrt(sm_dot(normal, normal)));
+}
+
+/* The offset along the normal alone, so much of it as is within reach. */
+static void find_lift(const double place[3], const double normal[3], const double x[3],
+                      double reach, double o[3])
+{
+    double off[3], up = sm_dot(normal, normal);
+    sm_subtract(x, place, off);
+    o[0] = o[1] = 0;
+    o[2] = up > 0 ? fmax(-reach, fmin(sm_dot(off, normal) / up, reach)) : 0;
+}
+
+/* The offsets; where Newton's steps do not find them within reach, those in the frame at the place,
+ * the first step's; and where these are not, the one along the normal. */
 static void find_foot(const double place[3][3], const double normal[3][3], const double x[3],
                       const double edge[2], double height, double o[3])
 {
-    double first[3] = {0}, off = INFINITY;
+    double first[3] = {0}, off = INFINITY, near = REF_FOOT_NEAR * height, reach[3];
+    find_reach(place, normal[0], x, edge, height, reach);
     step(place, normal, x, first);
-    double far = beyond(first, edge, height);
-    for (int k = 0; k < 3 && far > 1; k++) first[k] /= far;
+    if (!is_within(first, reach)) find_lift(place[0], normal[0], x, reach[2], first);
     memcpy(o, first, sizeof first);
-    for (int n = 0; n < REF_FOOT_MOST_STEPS && off > 1e-7 * height &&
-                    beyond(o, edge, height) <= REF_FOOT_WITHIN;
-         n++)
+    for (int n = 0; n < REF_FOOT_MOST_STEPS && off > near && is_within(o, reach); n++)
         off = step(place, normal, x, o); /* the last one squares it */
-    if (!(off < 1e-6 * height && beyond(o, edge, height) <= REF_FOOT_WITHIN))
-        memcpy(o, first, sizeof first);
+    if (!(off < 10 * near && is_within(o, reach))) memcpy(o, first, sizeof first);
 }
 
 bool ref_foot_offsets(const double place[3][3], const double normal[3][3], const double x[3],

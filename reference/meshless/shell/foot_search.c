@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <string.h>
 
 #include "../../../lib/simd/real.h"
 
@@ -33,6 +34,11 @@ INLINE Lanes choose(Bits which, Lanes yes, Lanes no)
 INLINE Lanes larger(Lanes a, Lanes b)
 {
     return choose((Bits)(a > b), a, b);
+}
+
+INLINE Lanes smaller(Lanes a, Lanes b)
+{
+    return choose((Bits)(a < b), a, b);
 }
 
 INLINE Lanes magnitude(Lanes v)
@@ -73,8 +79,8 @@ static void expand(const double sum[6][REF_FRAME_SLOPES], int first, int count,
 /* Some points, and offsets of theirs. */
 typedef struct {
     Lanes x[3], place[3][3], normal[3][3];
-    Lanes height, per_reach[3]; /* one over it */
-    Lanes o[3], square;         /* of how far offsets were off before the last step */
+    Lanes height, reach[3];
+    Lanes o[3], square; /* of how far offsets were off before the last step */
 } Some;
 
 /* One of Newton's steps as in foot.c, without its root, where `which` says so. */
@@ -101,17 +107,40 @@ INLINE void step(Some *at, Bits which)
     at->square = choose(which, dot(off, off), at->square);
 }
 
-INLINE Lanes beyond(const Some *at)
+INLINE Bits is_within(const Some *at)
 {
-    Lanes out[3];
-    for (int k = 0; k < 3; k++) out[k] = magnitude(at->o[k] * at->per_reach[k]);
-    return larger(larger(out[0], out[1]), out[2]);
+    Bits within = ~(Bits){0};
+    for (int k = 0; k < 3; k++)
+        within &= (Bits)(magnitude(at->o[k]) <= REF_FOOT_WITHIN * at->reach[k]);
+    return within;
 }
 
 INLINE Lanes root(Lanes v)
 {
     for (int l = 0; l < LANES; l++) v[l] = sqrt(v[l]);
     return v;
+}
+
+/* As find_reach() and find_lift() of foot.c. */
+INLINE void find_reach(const Lanes edge[2], Some *at)
+{
+    Lanes off[3];
+    for (int d = 0; d < 3; d++) off[d] = at->x[d] - at->place[0][d];
+    const Lanes most = 2 * root(dot(off, off)) + REF_FOOT_NEAR * at->height;
+    for (int k = 0; k < 2; k++)
+        at->reach[k] = smaller(edge[k], most / root(dot(at->place[1 + k], at->place[1 + k])));
+    at->reach[2] = smaller(at->height, most / root(dot(at->normal[0], at->normal[0])));
+}
+
+INLINE void find_lift(Some *at, Bits which)
+{
+    Lanes off[3];
+    for (int d = 0; d < 3; d++) off[d] = at->x[d] - at->place[0][d];
+    const Lanes none = {0}, up = dot(at->normal[0], at->normal[0]);
+    const Bits upward = (Bits)(up > 0);
+    const Lanes lift = choose(upward, dot(off, at->normal[0]) / choose(upward, up, none + 1), none);
+    const Lanes within = larger(-at->reach[2], smaller(lift, at->reach[2]));
+    for (int k = 0; k < 3; k++) at->o[k] = choose(which, k == 2 ? within : none, at->o[k]);
 }
 
 INLINE Some some_at(const RefFootPoints *points, int p)
@@ -122,12 +151,10 @@ INLINE Some some_at(const RefFootPoints *points, int p)
         for (int k = 0; k < 3; k++) at.place[k][d] = load(points->place[k][d] + p);
         for (int k = 0; k < 3; k++) at.normal[k][d] = load(points->normal[k][d] + p);
     }
-    const Lanes along = load(points->edge[0] + p), across = load(points->edge[1] + p);
+    const Lanes edge[2] = {load(points->edge[0] + p), load(points->edge[1] + p)};
     at.height = 2 * root(root(dot(at.place[1], at.place[1]) * dot(at.place[2], at.place[2]))) *
-                larger(along, across);
-    at.per_reach[0] = 1 / along;
-    at.per_reach[1] = 1 / across;
-    at.per_reach[2] = 1 / at.height;
+                larger(edge[0], edge[1]);
+    find_reach(edge, &at);
     return at;
 }
 
@@ -142,19 +169,18 @@ static void find(int count, RefFootPoints *points)
 {
     for (int p = 0; p < count; p += LANES) {
         Some at = some_at(points, p);
-        const Lanes none = {0}, near = 1e-7 * at.height;
+        const Lanes near = REF_FOOT_NEAR * at.height;
         const Bits varies = (Bits)(at.height > 0); /* functions do */
         Lanes first[3];
         step(&at, varies);
-        const Lanes far = larger(beyond(&at), none + 1);
-        for (int k = 0; k < 3; k++) at.o[k] = first[k] = at.o[k] / far;
-        Bits going = varies;
+        find_lift(&at, varies & ~is_within(&at));
+        memcpy(first, at.o, sizeof first);
+        Bits going = varies & is_within(&at);
         for (int n = 0; n < REF_FOOT_MOST_STEPS && any(going); n++) {
             step(&at, going);
-            going &= (Bits)(at.square > near * near) & (Bits)(beyond(&at) <= REF_FOOT_WITHIN);
+            going &= (Bits)(at.square > near * near) & is_within(&at);
         }
-        const Bits found =
-            (Bits)(at.square < 100 * near * near) & (Bits)(beyond(&at) <= REF_FOOT_WITHIN);
+        const Bits found = (Bits)(at.square < 100 * near * near) & is_within(&at);
         for (int k = 0; k < 3; k++) store(points->offset[k] + p, choose(found, at.o[k], first[k]));
     }
 }

@@ -7,7 +7,10 @@
 
 enum { REF_FOOT_MOST_STEPS = 12 /* of Newton's */ };
 
-/* How much of the reach offsets may be: what was shortened to it is within, however that was
+/* How near offsets lead to a point, as a share of the reach up. */
+#define REF_FOOT_NEAR 1e-7
+
+/* How much of the reach offsets may be: where they are all of it, they are within, however that was
  * rounded. */
 #define REF_FOOT_WITHIN (1 + 1e-9)
 

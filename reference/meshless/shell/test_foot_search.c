@@ -90,6 +90,17 @@ static double height_of(const Beside *at)
     return 2 * sqrt(sqrt(square)) * fmax(at->edge[0], at->edge[1]);
 }
 
+/* No offset leads farther than twice as far as the point is. */
+static bool are_near(const Beside *at, const double o[3])
+{
+    double off = sqrt(sm_square_between(at->x, at->place[0])), most = 0;
+    for (int k = 0; k < 3; k++) {
+        const double *side = k < 2 ? at->place[1 + k] : at->normal[0];
+        most = fmax(most, fabs(o[k]) * sqrt(sm_dot(side, side)));
+    }
+    return most <= 2.001 * off + 1e-6 * height_of(at);
+}
+
 static void find_feet(unsigned *seed)
 {
     static RefFootPoints points;
@@ -110,6 +121,7 @@ static void find_feet(unsigned *seed)
             assert_true(fabs(points.offset[k][p] - o[k]) <= 1e-8 * reach[k]);
             assert_true(fabs(o[k]) <= 1.001 * reach[k] && (varies || o[k] == 0));
         }
+        assert_true(are_near(at, o));
     }
 }
 
