@@ -49,16 +49,16 @@ static void enter(RefNodes *nodes, long n, bool count)
 /* What halves bins: room for more of them and for their members. */
 typedef struct {
     RefNodes *nodes;
-    long bins, members, bin_room, member_room;
+    long bin_room, member_room;
 } Halving;
 
 static void note_members(Halving *h, long bin, int count, const int *member)
 {
     RefNodes *nodes = h->nodes;
-    sm_make_room(nodes->member, h->member_room, h->members + count);
-    if (count) memcpy(nodes->member + h->members, member, (size_t)count * sizeof *member);
-    nodes->bin[bin] = (RefNodesBin){.count = count, .first = h->members};
-    h->members += count;
+    sm_make_room(nodes->member, h->member_room, nodes->members + count);
+    if (count) memcpy(nodes->member + nodes->members, member, (size_t)count * sizeof *member);
+    nodes->bin[bin] = (RefNodesBin){.count = count, .first = nodes->members};
+    nodes->members += count;
     if (count > nodes->most) nodes->most = count;
 }
 
@@ -79,10 +79,10 @@ static void settle(Halving *h, long bin, int halved, const double place[3], int 
         note_members(h, bin, count, member);
         return;
     }
-    long first = h->bins;
+    long first = nodes->bins;
     int *touching = sm_alloc((size_t)count, sizeof *touching);
-    h->bins += parts;
-    sm_make_room(nodes->bin, h->bin_room, h->bins);
+    nodes->bins += parts;
+    sm_make_room(nodes->bin, h->bin_room, nodes->bins);
     nodes->bin[bin].child = (int)first;
     for (int part = 0; part < parts; part++) {
         double at[3], low[3], high[3];
@@ -226,13 +226,14 @@ void ref_nodes_bin(RefNodes *nodes)
     nodes->bin = NULL;
     nodes->member = NULL;
     nodes->most = 0;
-    nodes->images = 0;
+    nodes->images = nodes->bins = nodes->members = 0;
     if (nodes->count == 0) return;
     place_images(nodes);
     long bins = lay_out(nodes);
     nodes->bin = sm_alloc((size_t)bins, sizeof *nodes->bin);
     fill(nodes, bins);
-    Halving halving = {.nodes = nodes, .bins = bins, .bin_room = bins};
+    Halving halving = {.nodes = nodes, .bin_room = bins};
+    nodes->bins = bins;
     int *coarse = nodes->member;
     nodes->member = NULL;
     for (long b = 0; b < bins; b++) {
@@ -332,14 +333,14 @@ void ref_nodes_place(const RefField *field, const RefOctants *tree, double alpha
 
 RefNodes ref_nodes_copy(const RefNodes *nodes)
 {
+    size_t entries = (size_t)(nodes->count + nodes->images);
     RefNodes copy = *nodes;
-    copy.position = sm_copy(nodes->position, (size_t)nodes->count, sizeof *nodes->position);
-    copy.reach = sm_copy(nodes->reach, (size_t)nodes->count, sizeof *nodes->reach);
-    copy.owner = NULL;
-    copy.home = NULL;
-    copy.dimmed = NULL;
-    copy.bin = NULL;
-    copy.member = NULL;
-    ref_nodes_bin(&copy);
+    copy.position = sm_copy(nodes->position, entries, sizeof *nodes->position);
+    copy.reach = sm_copy(nodes->reach, entries, sizeof *nodes->reach);
+    if (nodes->owner) copy.owner = sm_copy(nodes->owner, entries, sizeof *nodes->owner);
+    if (nodes->home) copy.home = sm_copy(nodes->home, entries, sizeof *nodes->home);
+    if (nodes->dimmed) copy.dimmed = sm_copy(nodes->dimmed, entries, sizeof *nodes->dimmed);
+    copy.bin = sm_copy(nodes->bin, (size_t)nodes->bins, sizeof *nodes->bin);
+    copy.member = sm_copy(nodes->member, (size_t)nodes->members, sizeof *nodes->member);
     return copy;
 }
