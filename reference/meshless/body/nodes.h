@@ -57,7 +57,7 @@ typedef struct {
     bool *dimmed;        /* [count + images] and whether zeros may be between it and a place */
     double low[3], edge; /* the bins' corner and edge, */
     int size[3];         /* bins a direction, the first ones of */
-    long bins, members; /* with those that were halved; of all of them */
+    long bins, members;  /* with those that were halved; of all of them */
     RefNodesBin *bin;
     int depth;   /* how often bins are halved where covers are smallest */
     int *member; /* what they say */
