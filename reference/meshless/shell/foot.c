@@ -101,11 +101,12 @@ static double step(const double place[3][3], const double normal[3][3], const do
     return sqrt(sm_dot(off, off));
 }
 
-static bool is_within(const double o[3], const double reach[3])
+/* How far o leads out of the reach, and 1 within it. */
+static double beyond(const double o[3], const double reach[3])
 {
-    for (int k = 0; k < 3; k++)
-        if (!(fabs(o[k]) <= REF_FOOT_WITHIN * reach[k])) return false;
-    return true;
+    double far = REF_FOOT_WITHIN;
+    for (int k = 0; k < 3; k++) far = fmax(far, fabs(o[k]) / reach[k]);
+    return far / REF_FOOT_WITHIN;
 }
 
 /* Of a cell's edges along the parameters and of `height` up; and no offset leads farther than twice
@@ -119,29 +120,31 @@ static void find_reach(const double place[3][3], const double normal[3], const d
     reach[2] = fmin(height, most / sqrt(sm_dot(normal, normal)));
 }
 
-/* The offset along the normal alone, so much of it as is within reach. */
-static void find_lift(const double place[3], const double normal[3], const double x[3],
-                      double reach, double o[3])
+/* Offsets that lead out of the reach become shorter, and the farther they lead, the more of the
+ * offset along the normal alone they become. */
+static void shorten(const double place[3], const double normal[3], const double x[3],
+                    const double reach[3], double o[3])
 {
-    double off[3], up = sm_dot(normal, normal);
+    double off[3], up = sm_dot(normal, normal), far = beyond(o, reach), share = 1 / far;
     sm_subtract(x, place, off);
-    o[0] = o[1] = 0;
-    o[2] = up > 0 ? fmax(-reach, fmin(sm_dot(off, normal) / up, reach)) : 0;
+    double lift = up > 0 ? fmax(-reach[2], fmin(sm_dot(off, normal) / up, reach[2])) : 0;
+    if (far == 1) return;
+    for (int k = 0; k < 3; k++) o[k] = share * share * o[k] + (k == 2 ? (1 - share) * lift : 0);
 }
 
-/* The offsets; where Newton's steps do not find them within reach, those in the frame at the place,
- * the first step's; and where these are not, the one along the normal. */
+/* The offsets, or where Newton's steps do not find them within reach, those in the frame at the
+ * place: the first step's, shortened. */
 static void find_foot(const double place[3][3], const double normal[3][3], const double x[3],
                       const double edge[2], double height, double o[3])
 {
     double first[3] = {0}, off = INFINITY, near = REF_FOOT_NEAR * height, reach[3];
     find_reach(place, normal[0], x, edge, height, reach);
     step(place, normal, x, first);
-    if (!is_within(first, reach)) find_lift(place[0], normal[0], x, reach[2], first);
+    shorten(place[0], normal[0], x, reach, first);
     memcpy(o, first, sizeof first);
-    for (int n = 0; n < REF_FOOT_MOST_STEPS && off > near && is_within(o, reach); n++)
+    for (int n = 0; n < REF_FOOT_MOST_STEPS && off > near && beyond(o, reach) == 1; n++)
         off = step(place, normal, x, o); /* the last one squares it */
-    if (!(off < 10 * near && is_within(o, reach))) memcpy(o, first, sizeof first);
+    if (!(off < 10 * near && beyond(o, reach) == 1)) memcpy(o, first, sizeof first);
 }
 
 bool ref_foot_offsets(const double place[3][3], const double normal[3][3], const double x[3],

@@ -11,7 +11,7 @@
  * along the normal that the nodes' normals make, sum phi_I a3_I, comes through the point: in the
  * tangent plane at theta, phi_I + o_k phi_I,k in phi_I's place. So a rigid motion of the surface
  * carries points with it. Those of which it is not found nearby, within a cell's length, turn with
- * the frame at theta, but for what its normal's slopes would make of that; or where that frame is
+ * the frame at theta, but for what its normal's slopes would make of that; and where that frame is
  * no surface's, as beside cracks, with the normal there alone. The warp is the shell's.
  * `loose` as in skin.h. */
 void ref_foot_skin(const RefShell *shell, const RefWarp *warp, long count, const double (*theta)[2],
@@ -24,10 +24,11 @@ void ref_foot_renew(const RefCracked *cracked, const RefWarp *warp, const bool *
                     const double (*theta)[2], const double (*x)[3], RefSkin *skin, long *loose);
 
 /* Offsets along the parameters and up the normal that lead to x from a place, given with its slopes
- * and those of its normal; where Newton's steps find none within reach, those in the frame there;
- * where these are not, the one up the normal. The reach is a cell's edges, and twice as much up,
- * and no offset leads farther than twice as far as x is: functions beside cracks may have slopes
- * ten times those of the surface. False, and nothing, where slopes are zero. */
+ * and those of its normal; where Newton's steps find none within reach, those in the frame there,
+ * or the farther these lead out of reach, shorter ones with more of the one up the normal. The
+ * reach is a cell's edges, and twice as much up, and no offset leads farther than twice as far as x
+ * is: functions beside cracks may have slopes ten times those of the surface. False, and nothing,
+ * where slopes are zero. */
 bool ref_foot_offsets(const double place[3][3], const double normal[3][3], const double x[3],
                       const double edge[2], double o[3]);
 

@@ -3,7 +3,6 @@
 
 #include <math.h>
 #include <stdbool.h>
-#include <string.h>
 
 #include "../../../lib/simd/real.h"
 
@@ -107,12 +106,11 @@ INLINE void step(Some *at, Bits which)
     at->square = choose(which, dot(off, off), at->square);
 }
 
-INLINE Bits is_within(const Some *at)
+INLINE Lanes beyond(const Some *at)
 {
-    Bits within = ~(Bits){0};
-    for (int k = 0; k < 3; k++)
-        within &= (Bits)(magnitude(at->o[k]) <= REF_FOOT_WITHIN * at->reach[k]);
-    return within;
+    Lanes far = (Lanes){0} + REF_FOOT_WITHIN;
+    for (int k = 0; k < 3; k++) far = larger(magnitude(at->o[k]) / at->reach[k], far);
+    return far / REF_FOOT_WITHIN;
 }
 
 INLINE Lanes root(Lanes v)
@@ -121,7 +119,7 @@ INLINE Lanes root(Lanes v)
     return v;
 }
 
-/* As find_reach() and find_lift() of foot.c. */
+/* As find_reach() and shorten() of foot.c. */
 INLINE void find_reach(const Lanes edge[2], Some *at)
 {
     Lanes off[3];
@@ -132,15 +130,17 @@ INLINE void find_reach(const Lanes edge[2], Some *at)
     at->reach[2] = smaller(at->height, most / root(dot(at->normal[0], at->normal[0])));
 }
 
-INLINE void find_lift(Some *at, Bits which)
+INLINE void shorten(Some *at)
 {
     Lanes off[3];
     for (int d = 0; d < 3; d++) off[d] = at->x[d] - at->place[0][d];
     const Lanes none = {0}, up = dot(at->normal[0], at->normal[0]);
     const Bits upward = (Bits)(up > 0);
-    const Lanes lift = choose(upward, dot(off, at->normal[0]) / choose(upward, up, none + 1), none);
-    const Lanes within = larger(-at->reach[2], smaller(lift, at->reach[2]));
-    for (int k = 0; k < 3; k++) at->o[k] = choose(which, k == 2 ? within : none, at->o[k]);
+    const Lanes whole = dot(off, at->normal[0]) / choose(upward, up, none + 1);
+    const Lanes lift = larger(-at->reach[2], smaller(choose(upward, whole, none), at->reach[2]));
+    const Lanes share = 1 / beyond(at);
+    for (int k = 0; k < 3; k++)
+        at->o[k] = share * share * at->o[k] + (k == 2 ? (1 - share) * lift : none);
 }
 
 INLINE Some some_at(const RefFootPoints *points, int p)
@@ -169,18 +169,18 @@ static void find(int count, RefFootPoints *points)
 {
     for (int p = 0; p < count; p += LANES) {
         Some at = some_at(points, p);
-        const Lanes near = REF_FOOT_NEAR * at.height;
+        const Lanes none = {0}, near = REF_FOOT_NEAR * at.height;
         const Bits varies = (Bits)(at.height > 0); /* functions do */
         Lanes first[3];
         step(&at, varies);
-        find_lift(&at, varies & ~is_within(&at));
-        memcpy(first, at.o, sizeof first);
-        Bits going = varies & is_within(&at);
+        shorten(&at);
+        for (int k = 0; k < 3; k++) at.o[k] = first[k] = choose(varies, at.o[k], none);
+        Bits going = varies;
         for (int n = 0; n < REF_FOOT_MOST_STEPS && any(going); n++) {
             step(&at, going);
-            going &= (Bits)(at.square > near * near) & is_within(&at);
+            going &= (Bits)(at.square > near * near) & (Bits)(beyond(&at) == 1);
         }
-        const Bits found = (Bits)(at.square < 100 * near * near) & is_within(&at);
+        const Bits found = (Bits)(at.square < 100 * near * near) & (Bits)(beyond(&at) == 1);
         for (int k = 0; k < 3; k++) store(points->offset[k] + p, choose(found, at.o[k], first[k]));
     }
 }
