@@ -138,6 +138,7 @@ fi
 # Ctrl-C ends it with a line, and what lent it a display with it.
 echo 'import os, signal; os.kill(os.getpid(), signal.SIGINT)' >vtk.py
 status=0
+rm said # what lent the one before its display may still write there
 PYTHONPATH=. TMPDIR=$out "$render" penguin.vtkhdf -o none.png 2>said || status=$?
 [ "$status" -eq 130 ] && [ "$(cat said)" = "render.py: interrupted: nothing was written" ] && ! [ -e none.png ] || lost
 for _ in {1..50}; do
