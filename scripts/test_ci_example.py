@@ -67,11 +67,11 @@ def main():
             if words[0] == "tables":
                 words += ["--scene", "penguin", "--repeats", "2", "--block", "0.1"]
             done = subprocess.run([PROGRAM, *words], cwd=folder, capture_output=True, text=True)
+            if done.returncode:
+                fail(f"{' '.join(words)} ended with {done.returncode}: {done.stderr}")
             if "BUSY" in done.stdout:
                 print("skipped: other programs take the processors: the history has no times")
                 sys.exit(77)
-            if done.returncode:
-                fail(f"{' '.join(words)} ended with {done.returncode}: {done.stderr}")
         if not (pathlib.Path(folder) / "speed.json").stat().st_size:
             fail("nothing is exported")
     try:

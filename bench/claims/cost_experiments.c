@@ -188,7 +188,7 @@ static void time_sums(const BenchExperiment *of, TimedBody *body, int points)
     }
     int w = of->scene->params.w;
     double side = bench_structure_side(&of->body->voxels, w);
-    if (row.busy) { /* of which there may be no sample */
+    if (row.busy) { /* there may be no undisturbed sample */
         of->curve->busy = of->curve->valid;
         bench_curve_fail(of->curve, "w = %d, %s: others took %.0f%% of its processor", w, summation,
                          row.lost_percent);

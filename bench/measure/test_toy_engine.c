@@ -268,7 +268,10 @@ TEST(its_row_is_on_the_report_page)
     SmError error;
     char command[1024], *words[] = {"shapebench"};
     needs_python("h5py, matplotlib");
-    needs(isfinite(row.total_ms), "other programs take the processors");
+    if (!isfinite(row.total_ms)) {
+        bench_row_free(&row);
+        skip_because("other programs take the processors");
+    }
     bench_machine_read(1, words, 1, &machine);
     assert_int_equal(bench_store_rows(path_in("rows.h5"), &row, 1, &machine, &error), SM_OK);
     snprintf(command, sizeof command,

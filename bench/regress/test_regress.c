@@ -274,7 +274,11 @@ TEST(engines_of_one_scene_are_apart)
     assert_int_equal(
         bench_store_load(path_in("lattice.h5"), &lattice, &count, &(BenchMachine){0}, &error),
         SM_OK);
-    needs(!rows[0].busy && !lattice[0].busy, "other programs take the processors");
+    if (rows[0].busy || lattice[0].busy) {
+        bench_row_free(&rows[0]);
+        bench_rows_free(lattice, count);
+        skip_because("other programs take the processors");
+    }
     rows[1] = lattice[0];
     assert_int_equal(bench_store_rows(path_in("two.h5"), rows, 2, &machine, &error), SM_OK);
     for (int named = 0; named < 2; named++) {

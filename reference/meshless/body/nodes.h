@@ -57,7 +57,7 @@ typedef struct {
     bool *dimmed;        /* [count + images] and whether zeros may be between it and a place */
     double low[3], edge; /* the bins' corner and edge, */
     int size[3];         /* bins a direction, the first ones of */
-    long bins, members;  /* with those that were halved; of all of them */
+    long bins, members;  /* how many bins, halved ones too; and their members */
     RefNodesBin *bin;
     int depth;   /* how often bins are halved where covers are smallest */
     int *member; /* what they say */
@@ -74,7 +74,8 @@ void ref_nodes_place(const RefField *field, const RefOctants *tree, double alpha
 
 void ref_nodes_free(RefNodes *nodes);
 
-/* A copy with images and bins of its own, which the caller frees. */
+/* A copy with images and bins of its own, as they are: ref_nodes_bin() was called after the last
+ * change. The caller frees. */
 RefNodes ref_nodes_copy(const RefNodes *nodes);
 
 /* Makes images and bins anew after reaches have changed. O((nodes + images) depth). */

@@ -26,9 +26,9 @@ void ref_foot_renew(const RefCracked *cracked, const RefWarp *warp, const bool *
 /* Offsets along the parameters and up the normal that lead to x from a place, given with its slopes
  * and those of its normal; where Newton's steps find none within reach, those in the frame there,
  * or the farther these lead out of reach, shorter ones with more of the one up the normal. The
- * reach is a cell's edges, and twice as much up, and no offset leads farther than twice as far as x
- * is: functions beside cracks may have slopes ten times those of the surface. False, and nothing,
- * where slopes are zero. */
+ * reach is a cell's edges, and twice as much up, and none of the three leads farther than twice as
+ * far as x is: functions beside cracks may have slopes ten times those of the surface. False, and
+ * nothing, where slopes are zero. */
 bool ref_foot_offsets(const double place[3][3], const double normal[3][3], const double x[3],
                       const double edge[2], double o[3]);
 

@@ -7,7 +7,7 @@
 
 enum { REF_FOOT_MOST_STEPS = 12 /* of Newton's */ };
 
-/* How near offsets lead to a point, as a share of the reach up. */
+/* How near offsets lead to a point, as a share of twice a cell's length. */
 #define REF_FOOT_NEAR 1e-7
 
 /* How much of the reach offsets may be: where they are all of it, they are within, however that was
@@ -18,7 +18,7 @@ enum { REF_FOOT_MOST_STEPS = 12 /* of Newton's */ };
 typedef struct {
     double x[3][REF_SKIN_ROOM];
     double from[2][REF_SKIN_ROOM];      /* their parameters, from those of a sample */
-    double edge[2][REF_SKIN_ROOM];      /* of their cells: the reach of offsets */
+    double edge[2][REF_SKIN_ROOM];      /* of their cells: the most that offsets are */
     double place[3][3][REF_SKIN_ROOM];  /* there, and its two slopes, */
     double normal[3][3][REF_SKIN_ROOM]; /* and of normals */
     double offset[3][REF_SKIN_ROOM];    /* to the foot: along the parameters and up the normal */

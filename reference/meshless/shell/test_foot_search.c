@@ -125,6 +125,26 @@ static void find_feet(unsigned *seed)
     }
 }
 
+/* Offsets to a point above a plane, which is so many cells along it. */
+static void find_along(double cells, double o[3])
+{
+    const double place[3][3] = {{0}, {1, 0, 0}, {0, 1, 0}}, normal[3][3] = {{0, 0, 1}};
+    const double edge[2] = {1, 1}, x[3] = {cells, 0, 0.5};
+    assert_true(ref_foot_offsets(place, normal, x, edge, o));
+    assert_true(o[1] == 0);
+}
+
+TEST(out_of_reach_points_go_over_to_their_normal)
+{
+    double inside[3], outside[3], far[3];
+    find_along(0.999, inside);
+    find_along(1.001, outside);
+    find_along(1e4, far);
+    assert_true(fabs(inside[0] - 0.999) < 1e-9 && fabs(inside[2] - 0.5) < 1e-9);
+    for (int k = 0; k < 3; k++) assert_true(fabs(outside[k] - inside[k]) < 0.004);
+    assert_true(fabs(far[0]) < 0.001 && fabs(far[2] - 0.5) < 0.001);
+}
+
 TEST(feet_are_those_found_one_by_one)
 {
     with_each_set(find_feet);
