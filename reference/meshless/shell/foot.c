@@ -110,11 +110,11 @@ static double beyond(const double o[3], const double reach[3])
 }
 
 /* Of a cell's edges along the parameters and of `height` up; and no offset leads farther than twice
- * as far as x is from the place. */
-static void find_reach(const double place[3][3], const double normal[3], const double x[3],
+ * as far as the point is from the place, which is `off`. */
+static void find_reach(const double place[3][3], const double normal[3], const double off[3],
                        const double edge[2], double height, double reach[3])
 {
-    double most = 2 * sqrt(sm_square_between(x, place[0])) + REF_FOOT_NEAR * height;
+    double most = 2 * sqrt(sm_dot(off, off)) + REF_FOOT_NEAR * height;
     for (int k = 0; k < 2; k++)
         reach[k] = fmin(edge[k], most / sqrt(sm_dot(place[1 + k], place[1 + k])));
     reach[2] = fmin(height, most / sqrt(sm_dot(normal, normal)));
@@ -122,11 +122,9 @@ static void find_reach(const double place[3][3], const double normal[3], const d
 
 /* Offsets that lead out of the reach become shorter, and the farther they lead, the more of the
  * offset along the normal alone they become. */
-static void shorten(const double place[3], const double normal[3], const double x[3],
-                    const double reach[3], double o[3])
+static void shorten(const double normal[3], const double off[3], const double reach[3], double o[3])
 {
-    double off[3], up = sm_dot(normal, normal), far = beyond(o, reach), share = 1 / far;
-    sm_subtract(x, place, off);
+    double up = sm_dot(normal, normal), far = beyond(o, reach), share = 1 / far;
     double lift = up > 0 ? fmax(-reach[2], fmin(sm_dot(off, normal) / up, reach[2])) : 0;
     if (far == 1) return;
     for (int k = 0; k < 3; k++) o[k] = share * share * o[k] + (k == 2 ? (1 - share) * lift : 0);
@@ -137,14 +135,15 @@ static void shorten(const double place[3], const double normal[3], const double 
 static void find_foot(const double place[3][3], const double normal[3][3], const double x[3],
                       const double edge[2], double height, double o[3])
 {
-    double first[3] = {0}, off = INFINITY, near = REF_FOOT_NEAR * height, reach[3];
-    find_reach(place, normal[0], x, edge, height, reach);
+    double first[3] = {0}, off[3], left = INFINITY, near = REF_FOOT_NEAR * height, reach[3];
+    sm_subtract(x, place[0], off);
+    find_reach(place, normal[0], off, edge, height, reach);
     step(place, normal, x, first);
-    shorten(place[0], normal[0], x, reach, first);
+    shorten(normal[0], off, reach, first);
     memcpy(o, first, sizeof first);
-    for (int n = 0; n < REF_FOOT_MOST_STEPS && off > near && beyond(o, reach) == 1; n++)
-        off = step(place, normal, x, o); /* the last one squares it */
-    if (!(off < 10 * near && beyond(o, reach) == 1)) memcpy(o, first, sizeof first);
+    for (int n = 0; n < REF_FOOT_MOST_STEPS && left > near && beyond(o, reach) == 1; n++)
+        left = step(place, normal, x, o); /* the last one squares it */
+    if (!(left < 10 * near && beyond(o, reach) == 1)) memcpy(o, first, sizeof first);
 }
 
 bool ref_foot_offsets(const double place[3][3], const double normal[3][3], const double x[3],

@@ -78,8 +78,8 @@ static void expand(const double sum[6][REF_FRAME_SLOPES], int first, int count,
 /* Some points, and offsets of theirs. */
 typedef struct {
     Lanes x[3], place[3][3], normal[3][3];
-    Lanes height, reach[3];
-    Lanes o[3], square; /* of how far offsets were off before the last step */
+    Lanes off[3], height, reach[3]; /* off: of the point from its place */
+    Lanes o[3], square;             /* of how far offsets were off before the last step */
 } Some;
 
 /* One of Newton's steps as in foot.c, without its root, where `which` says so. */
@@ -122,9 +122,7 @@ INLINE Lanes root(Lanes v)
 /* As find_reach() and shorten() of foot.c. */
 INLINE void find_reach(const Lanes edge[2], Some *at)
 {
-    Lanes off[3];
-    for (int d = 0; d < 3; d++) off[d] = at->x[d] - at->place[0][d];
-    const Lanes most = 2 * root(dot(off, off)) + REF_FOOT_NEAR * at->height;
+    const Lanes most = 2 * root(dot(at->off, at->off)) + REF_FOOT_NEAR * at->height;
     for (int k = 0; k < 2; k++)
         at->reach[k] = smaller(edge[k], most / root(dot(at->place[1 + k], at->place[1 + k])));
     at->reach[2] = smaller(at->height, most / root(dot(at->normal[0], at->normal[0])));
@@ -132,11 +130,9 @@ INLINE void find_reach(const Lanes edge[2], Some *at)
 
 INLINE void shorten(Some *at)
 {
-    Lanes off[3];
-    for (int d = 0; d < 3; d++) off[d] = at->x[d] - at->place[0][d];
     const Lanes none = {0}, up = dot(at->normal[0], at->normal[0]);
     const Bits upward = (Bits)(up > 0);
-    const Lanes whole = dot(off, at->normal[0]) / choose(upward, up, none + 1);
+    const Lanes whole = dot(at->off, at->normal[0]) / choose(upward, up, none + 1);
     const Lanes lift = larger(-at->reach[2], smaller(choose(upward, whole, none), at->reach[2]));
     const Lanes share = 1 / beyond(at);
     for (int k = 0; k < 3; k++)
@@ -150,6 +146,7 @@ INLINE Some some_at(const RefFootPoints *points, int p)
         at.x[d] = load(points->x[d] + p);
         for (int k = 0; k < 3; k++) at.place[k][d] = load(points->place[k][d] + p);
         for (int k = 0; k < 3; k++) at.normal[k][d] = load(points->normal[k][d] + p);
+        at.off[d] = at.x[d] - at.place[0][d];
     }
     const Lanes edge[2] = {load(points->edge[0] + p), load(points->edge[1] + p)};
     at.height = 2 * root(root(dot(at.place[1], at.place[1]) * dot(at.place[2], at.place[2]))) *
