@@ -188,7 +188,7 @@ TEST(a_shell_comes_apart)
     open_scene(torn);
     int first = view_surface(1);
     assert_true(view_figure(1, VIEW_PIECES) == 1);
-    view_step(1, 40 * 4);
+    view_step(1, 80 * 4);
     assert_true(view_surface(1) != first);
     long pieces = (long)view_figure(1, VIEW_PIECES);
     assert_true(pieces >= 2 && pieces == flooded());

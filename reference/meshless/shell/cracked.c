@@ -10,6 +10,8 @@
 #include "field_transfer.h"
 
 enum { SHARE_POINTS = 8 }; /* along a cover's edge */
+/* Functions that give a surface more than so many times its area have it far from where it is. */
+static const double MOST_AREA = 4;
 
 static bool terminal(const RefCracked *cracked, long c)
 {
@@ -142,25 +144,45 @@ static void count_all(RefCracked *cracked)
     }
 }
 
-int ref_cracked_sample(const RefCracked *cracked, long c, const double theta[2])
+bool ref_cracked_bears(const RefSamples *samples, int n)
 {
-    const RefSamples *samples = &cracked->cell[c].samples;
-    const RefQuadtree *tree = &cracked->shell->tree;
-    double middle[2], edge[2], least = INFINITY;
+    const RefFrame *frame = samples->frame + n;
+    double area = samples->area[n] / samples->weight[n];
+    return ref_thin_is_stiff(frame, area, samples->trace[n]) && frame->area < MOST_AREA * area;
+}
+
+/* The nearest that no crack parts from a place, of all or of those that bear points; -1: none is.
+ */
+static int nearest_unparted(const RefCracked *cracked, const RefSamples *samples, bool all,
+                            const double theta[2])
+{
+    double least = INFINITY;
     int best = -1;
-    ref_quadtree_cell(tree, tree->cell + c, middle, edge);
-    int nearest = ref_samples_nearest(middle, edge, theta);
-    const double *there = samples->theta[nearest];
-    if (there[0] == theta[0] && there[1] == theta[1]) return nearest;
-    if (!ref_cracks_part(&cracked->cracks, theta, there)) return nearest;
     for (int n = 0; n < REF_SAMPLES_PER_CELL; n++) {
         const double *at = samples->theta[n];
         double x = at[0] - theta[0], y = at[1] - theta[1], far = x * x + y * y;
-        if (far >= least || ref_cracks_part(&cracked->cracks, theta, at)) continue;
+        if (far >= least || !(all || ref_cracked_bears(samples, n)) ||
+            ref_cracks_part(&cracked->cracks, theta, at))
+            continue;
         least = far;
         best = n;
     }
     return best;
+}
+
+int ref_cracked_sample(const RefCracked *cracked, long c, const double theta[2])
+{
+    const RefSamples *samples = &cracked->cell[c].samples;
+    const RefQuadtree *tree = &cracked->shell->tree;
+    double middle[2], edge[2];
+    ref_quadtree_cell(tree, tree->cell + c, middle, edge);
+    int nearest = ref_samples_nearest(middle, edge, theta);
+    const double *there = samples->theta[nearest];
+    if (there[0] == theta[0] && there[1] == theta[1]) return nearest;
+    if (ref_cracked_bears(samples, nearest) && !ref_cracks_part(&cracked->cracks, theta, there))
+        return nearest;
+    int best = nearest_unparted(cracked, samples, false, theta);
+    return best >= 0 ? best : nearest_unparted(cracked, samples, true, theta);
 }
 
 /* The functions at any place, from the samples' beside it. */

@@ -104,8 +104,12 @@ void ref_cracked_saved_free(RefCrackedSaved *saved);
 bool ref_cracked_side(const RefCracked *cracked, const double theta[2], const double eye[2],
                       RefShape *shape);
 
+/* Whether functions at a sample leave the surface its shape, so that places beside it may have
+ * them: it is stiff, and has not much more area than before any crack. */
+bool ref_cracked_bears(const RefSamples *samples, int n);
+
 /* Of a terminal cell's samples the one whose functions are those of a place in it: the nearest that
- * no crack parts from it; -1: none is. */
+ * no crack parts from it, of those that bear it, if there are any; -1: none is. */
 int ref_cracked_sample(const RefCracked *cracked, long cell, const double theta[2]);
 
 /* Whether any sample sees a node; others are tied to where they are by a stiffness of their own. */

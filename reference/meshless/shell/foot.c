@@ -28,6 +28,7 @@ typedef struct {
     int sample;                /* -1: none */
     Box near, own;             /* of all to which it is nearest; to which surely none is as near */
     bool open;                 /* no crack touches what is near the sample */
+    bool bears;                /* which has functions that bear points */
 } Sight;
 
 typedef struct {
@@ -231,41 +232,48 @@ static void look_at(const RefCracked *cracked, const double theta[2], Sight *sig
         sight->own.low[d] = low > begin ? low : begin;
         sight->own.high[d] = high < end ? high : end;
     }
+    sight->bears = ref_cracked_bears(sight->samples, s);
     sight->open =
         sight->whole || !ref_cracks_look(&cracked->cracks, sight->near.low, sight->near.high);
 }
 
-static bool is_nearest(const double theta[2], const Sight *sight)
+/* The sample whose functions move point p of the block, as ref_cracked_sample() has it. */
+static int sample_of(const Feet *feet, int p)
 {
-    return is_inside(theta, &sight->own) ||
-           (is_inside(theta, &sight->box) &&
-            ref_samples_nearest(sight->middle, sight->edge, theta) == sight->sample);
+    const RefCracks *cracks = &feet->cracked->cracks;
+    const double *theta = feet->at[p];
+    Sight *sight = feet->sight;
+    if (!is_inside(theta, &sight->own)) look_at(feet->cracked, theta, sight);
+    if (sight->bears && is_inside(theta, &sight->near) &&
+        (sight->open || !ref_cracks_part(cracks, theta, sight->samples->theta[sight->sample])))
+        return sight->sample;
+    return ref_cracked_sample(feet->cracked, sight->cell, theta);
 }
 
-/* Whether point p of the block has the functions of the sample, which is nearest. */
-static bool is_seen(const Feet *feet, int p, const Sight *sight)
+static void note_point(const Feet *feet, int p, int sample)
 {
-    const double *theta = feet->at[p], *from = sight->samples->theta[sight->sample];
+    const Sight *sight = feet->sight;
     for (int d = 0; d < 2; d++) {
-        feet->points->from[d][p] = theta[d] - from[d];
+        feet->points->from[d][p] = feet->at[p][d] - sight->samples->theta[sample][d];
         feet->points->edge[d][p] = sight->edge[d];
     }
-    return sight->open || !ref_cracks_part(&feet->cracked->cracks, theta, from);
 }
 
 /* The points of a block from `first` on that see the same sample; returns where others begin. */
 static int take_share(const Feet *feet, int first, int count, RefSkinShares *shares)
 {
-    Sight *sight = feet->sight;
+    const Sight *sight = feet->sight;
+    const int s = sample_of(feet, first);
     int end = first + 1;
-    look_at(feet->cracked, feet->at[first], sight);
-    if (!is_inside(feet->at[first], &sight->near) || !is_seen(feet, first, sight)) return end;
-    while (end < count && is_nearest(feet->at[end], sight) && is_seen(feet, end, sight)) end++;
+    if (s < 0) return end;
+    note_point(feet, first, s);
+    while (end < count && is_inside(feet->at[end], &sight->box) && sample_of(feet, end) == s)
+        note_point(feet, end++, s);
     const RefSamples *samples = sight->samples;
-    const long start = samples->start[sight->sample];
+    const long start = samples->start[s];
     RefSkinShare share = {.first = first,
                           .points = end - first,
-                          .nodes = (int)(samples->start[sight->sample + 1] - start),
+                          .nodes = (int)(samples->start[s + 1] - start),
                           .node = samples->node + start,
                           .part = (const double(*)[6])(samples->part + start)};
     for (int n = 0; n < share.nodes; n++) __builtin_prefetch(share.part + n);
@@ -275,11 +283,13 @@ static int take_share(const Feet *feet, int first, int count, RefSkinShares *sha
 
 /* Whether there are functions, of which ref_samples_expand() takes none back: Taylor's series are
  * of 1, x, y, x^2 / 2, y^2 / 2 and x y. */
-static bool is_tame(const RefSkinShare *share, const double edge[2])
+static bool is_tame(const RefSkinShare *share, const RefFootPoints *points)
 {
-    const double x = NEAR * edge[0], y = NEAR * edge[1];
-    const double most[6] = {1, x, y, x * x / 2, y * y / 2, x * y};
-    double largest = 0;
+    double far[2] = {0}, largest = 0;
+    for (int d = 0; d < 2; d++)
+        for (int p = share->first; p < share->first + share->points; p++)
+            far[d] = fmax(far[d], fabs(points->from[d][p]));
+    const double x = far[0], y = far[1], most[6] = {1, x, y, x * x / 2, y * y / 2, x * y};
     for (int n = 0; n < share->nodes; n++) {
         double value[2] = {0}; /* as a vector may be */
         for (int m = 0; m < 6; m++) value[m % 2] += fabs(share->part[n][m]) * most[m];
@@ -288,8 +298,8 @@ static bool is_tame(const RefSkinShare *share, const double edge[2])
     return largest > 0 && largest < REF_SAMPLES_MOST_VALUE;
 }
 
-/* What weigh() finds, of points that are nearest to the same sample of a shell that cracks: from
- * sums over its functions. */
+/* What weigh() finds, of points of a shell that cracks which the same sample moves: from sums over
+ * its functions. */
 static void share(const void *data, int count, const long *point, const double (*x)[3],
                   RefSkinShares *shares)
 {
@@ -304,9 +314,8 @@ static void share(const void *data, int count, const long *point, const double (
     for (int p = 0; p < count;) p = take_share(feet, p, count, shares);
     for (int s = 0; s < shares->count; s++) {
         const RefSkinShare share = shares->share[s];
-        const double edge[2] = {points->edge[0][share.first], points->edge[1][share.first]};
         double sum[6][FIELDS];
-        if (!is_tame(&share, edge)) continue;
+        if (!is_tame(&share, points)) continue;
         ref_frame_sums.parts(share.nodes, share.node, share.part,
                              (const double(*)[FIELDS])feet->field, sum);
         ref_foot_search.expand((const double(*)[FIELDS])sum, share.first, share.points, points);

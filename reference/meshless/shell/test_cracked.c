@@ -521,3 +521,56 @@ TEST(ways_to_a_grid_are_ways_to_its_places)
                   cut[0], cut[1], cut[2], changes, kept);
     assert_true(cut[0] > 1000 && cut[1] > 100 && cut[2] > 1000 && changes > 100 && kept > 100);
 }
+
+/* How far a place is from the nearest of a cell's samples that no crack parts from it, of all or of
+ * those that bear it. */
+static double distance_to_samples(const RefCracked *cracked, const RefSamples *samples, bool all,
+                                  const double theta[2])
+{
+    double least = INFINITY;
+    for (int n = 0; n < REF_SAMPLES_PER_CELL; n++) {
+        const double *at = samples->theta[n];
+        if ((all || ref_cracked_bears(samples, n)) && !ref_cracks_part(&cracked->cracks, theta, at))
+            least = fmin(least, hypot(at[0] - theta[0], at[1] - theta[1]));
+    }
+    return least;
+}
+
+TEST(places_have_functions_of_samples_that_bear_them)
+{
+    int bore = 0, bare = 0, none = 0;
+    for (int kind = 0; kind < SHEET_KINDS; kind++) {
+        Sheet sheet;
+        const RefCracked *cracked = &sheet.cracked;
+        const RefQuadtree *tree = &sheet.shell.tree;
+        random_sheet(kind, 0.7, &sheet);
+        for (int n = 0; n < 8; n++) {
+            random_growth(&seed, &sheet.cracked.cracks, half_cell(&sheet));
+            random_start(&seed, &sheet.cracked.cracks, half_cell(&sheet));
+            ref_cracked_update(&sheet.cracked, NULL);
+        }
+        for (int trial = 0; trial < 20000; trial++) {
+            int c = random_int(&seed, (int)tree->count);
+            double middle[2], edge[2], theta[2], least[2];
+            if (tree->cell[c].child >= 0) continue;
+            ref_quadtree_cell(tree, tree->cell + c, middle, edge);
+            for (int d = 0; d < 2; d++)
+                theta[d] = middle[d] + edge[d] * random_between(&seed, -0.5, 0.5);
+            const RefSamples *samples = &cracked->cell[c].samples;
+            int n = ref_cracked_sample(cracked, c, theta);
+            for (int k = 0; k < 2; k++) least[k] = distance_to_samples(cracked, samples, k, theta);
+            double wanted = least[isinf(least[0])], near = 1e-3 * edge[0];
+            assert_int_equal(n < 0, isinf(wanted));
+            none += n < 0;
+            if (n < 0) continue;
+            const double *at = samples->theta[n];
+            assert_true(fabs(hypot(at[0] - theta[0], at[1] - theta[1]) - wanted) < near);
+            bore += !isinf(least[0]) && least[0] > least[1] + near;
+            bare += isinf(least[0]);
+        }
+        sheet_free(&sheet);
+    }
+    print_message("%d places have farther samples, %d none that bears, %d none\n", bore, bare,
+                  none);
+    assert_true(bore > 0 && bare > 0);
+}
