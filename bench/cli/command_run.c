@@ -65,7 +65,8 @@ static const BenchSetting settings[] = {
     {BENCH_OPTION(
          "mode", "K", 1,
          "Meshless, shell: in place of the motion, one period of the free body's K-th natural "
-         "mode that deforms it, from 1, in so many frames"),
+         "mode that deforms it, from 1, in so many frames; its frequency, and that with half the "
+         "nodes"),
      BENCH_IN(Options, mode), 1, 994},
     {.section = 2, .help = "What is written:"},
     {BENCH_OUTPUT_OPTION("FILE.vtkhdf", 2, "Trajectory (default: SCENE.vtkhdf in this folder)"),

@@ -105,6 +105,9 @@ TEST(a_free_plate_twists_at_the_frequency_of_theory)
         for (int v = 0; v < VERTICES && f % 2 == 0; v++)
             for (int d = 0; d < 3; d++) assert_true(fabs(x[f][v][d] - x[0][v][d]) < 1e-6);
     }
+    double half = bench_mode_of_half(&play, 1); /* 200 nodes are enough for a flat plate */
+    assert_true(half > 1 / time[FRAMES] && fabs(half / theory - 1) < 0.03);
+    assert_true(isnan(bench_mode_of_half(&play, 994)));
     assert_int_equal(bench_mode_record(&play, NULL, 994, &error), SM_USAGE);
     assert_non_null(strstr(error.text, "--mode 994"));
     bench_playback_free(&play);
