@@ -96,7 +96,6 @@ static SmCode make_breaking(const RefMeshlessOptions *options, SmEngine *engine,
 RefShellOptions ref_shell_options(const RefMeshlessOptions *options, double longest)
 {
     return (RefShellOptions){
-        .across = 1,
         .nodes = options->nodes > 0 ? options->nodes : REF_SHELL_NODES,
         .basis = options->covers > 0 ? REF_MLS_PLANE_LINEAR : REF_MLS_PLANE_QUADRATIC,
         .eta = options->covers,

@@ -64,9 +64,11 @@ static void note_members(Halving *h, long bin, int count, const int *member)
 
 static bool is_coarse(const RefNodes *nodes, int halved, int count, const int *member)
 {
-    double third = INFINITY;
-    for (int m = 0; m < count; m++) third = fmin(third, nodes->reach[member[m]] / 3);
-    return count > FULL && halved < nodes->depth && ldexp(nodes->edge, -halved) > 1.01 * third;
+    double most = ldexp(nodes->edge, -halved) / 1.01;
+    bool coarse = false;
+    for (int m = 0; count > FULL && halved < nodes->depth && m < count && !coarse; m++)
+        coarse = nodes->reach[member[m]] / 3 < most;
+    return coarse;
 }
 
 /* Of a bin at `place` in edges of its own, and its members. */
@@ -111,8 +113,10 @@ static long lay_out(RefNodes *nodes)
     }
     for (long n = 0; n < entries; n++) {
         for (int d = 0; d < 3; d++) {
-            nodes->low[d] = fmin(nodes->low[d], nodes->position[n][d] - nodes->reach[n]);
-            high[d] = fmax(high[d], nodes->position[n][d] + nodes->reach[n]);
+            double first = nodes->position[n][d] - nodes->reach[n];
+            double last = nodes->position[n][d] + nodes->reach[n];
+            nodes->low[d] = first < nodes->low[d] ? first : nodes->low[d];
+            high[d] = last > high[d] ? last : high[d];
         }
         least = fmin(least, nodes->reach[n]);
     }

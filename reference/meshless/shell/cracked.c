@@ -109,9 +109,24 @@ static void take_samples(const RefCracked *cracked, long c, RefSamplesWork *take
     }
 }
 
+_Static_assert((int)REF_SAMPLES_PER_CELL <= 64, "a bit each");
+static uint64_t find_bearing(const RefSamples *samples)
+{
+    uint64_t bears = 0;
+    for (int n = 0; n < REF_SAMPLES_PER_CELL; n++) {
+        const RefFrame *frame = samples->frame + n;
+        double area = samples->area[n] / samples->weight[n];
+        bool does =
+            frame->area < MOST_AREA * area && ref_thin_is_stiff(frame, area, samples->trace[n]);
+        bears |= (uint64_t)does << n;
+    }
+    return bears;
+}
+
 static void integrate(RefCracked *cracked, RefCrackedCell *cell, RefThinWork *work)
 {
     ref_middle_frames((const double(*)[3])cracked->shell->X, &cell->samples);
+    cell->bears = find_bearing(&cell->samples);
     cell->soft = ref_thin_element(&cell->samples, 0, cracked->options.thickness,
                                   &cracked->options.material, work, &cell->element);
     cell->made = true;
@@ -144,24 +159,15 @@ static void count_all(RefCracked *cracked)
     }
 }
 
-bool ref_cracked_bears(const RefSamples *samples, int n)
-{
-    const RefFrame *frame = samples->frame + n;
-    double area = samples->area[n] / samples->weight[n];
-    return ref_thin_is_stiff(frame, area, samples->trace[n]) && frame->area < MOST_AREA * area;
-}
-
-/* The nearest that no crack parts from a place, of all or of those that bear points; -1: none is.
- */
-static int nearest_unparted(const RefCracked *cracked, const RefSamples *samples, bool all,
-                            const double theta[2])
+/* The nearest that no crack parts from a place, of all or of those that bear it; -1: none is. */
+static int nearest_unparted(const RefCracked *cracked, long c, bool all, const double theta[2])
 {
     double least = INFINITY;
     int best = -1;
     for (int n = 0; n < REF_SAMPLES_PER_CELL; n++) {
-        const double *at = samples->theta[n];
+        const double *at = cracked->cell[c].samples.theta[n];
         double x = at[0] - theta[0], y = at[1] - theta[1], far = x * x + y * y;
-        if (far >= least || !(all || ref_cracked_bears(samples, n)) ||
+        if (far >= least || !(all || ref_cracked_bears(cracked, c, n)) ||
             ref_cracks_part(&cracked->cracks, theta, at))
             continue;
         least = far;
@@ -179,10 +185,10 @@ int ref_cracked_sample(const RefCracked *cracked, long c, const double theta[2])
     int nearest = ref_samples_nearest(middle, edge, theta);
     const double *there = samples->theta[nearest];
     if (there[0] == theta[0] && there[1] == theta[1]) return nearest;
-    if (ref_cracked_bears(samples, nearest) && !ref_cracks_part(&cracked->cracks, theta, there))
+    if (ref_cracked_bears(cracked, c, nearest) && !ref_cracks_part(&cracked->cracks, theta, there))
         return nearest;
-    int best = nearest_unparted(cracked, samples, false, theta);
-    return best >= 0 ? best : nearest_unparted(cracked, samples, true, theta);
+    int best = nearest_unparted(cracked, c, false, theta);
+    return best >= 0 ? best : nearest_unparted(cracked, c, true, theta);
 }
 
 /* The functions at any place, from the samples' beside it. */

@@ -15,6 +15,8 @@
 #ifndef REF_CRACKED_H
 #define REF_CRACKED_H
 
+#include <stdint.h>
+
 #include "crack.h"
 #include "element_rows.h"
 #include "shell.h"
@@ -33,6 +35,9 @@ typedef struct {
     int splits;                           /* from there */
     int from;                             /* a new cell: that of its ancestors which was terminal */
     double reach;                         /* of its nodes */
+    uint64_t bears;                       /* samples whose functions leave the surface its shape, so
+                                             that places beside them may have them: these are stiff
+                                             and have not much more area than before any crack */
     int soft;                             /* samples without stiffness */
     bool made;                            /* has samples and an element */
     bool again;                           /* by the last update */
@@ -104,9 +109,11 @@ void ref_cracked_saved_free(RefCrackedSaved *saved);
 bool ref_cracked_side(const RefCracked *cracked, const double theta[2], const double eye[2],
                       RefShape *shape);
 
-/* Whether functions at a sample leave the surface its shape, so that places beside it may have
- * them: it is stiff, and has not much more area than before any crack. */
-bool ref_cracked_bears(const RefSamples *samples, int n);
+/* Whether one of a terminal cell's samples bears places beside it. */
+static inline bool ref_cracked_bears(const RefCracked *cracked, long cell, int sample)
+{
+    return cracked->cell[cell].bears >> sample & 1;
+}
 
 /* Of a terminal cell's samples the one whose functions are those of a place in it: the nearest that
  * no crack parts from it, of those that bear it, if there are any; -1: none is. */

@@ -232,7 +232,7 @@ static void look_at(const RefCracked *cracked, const double theta[2], Sight *sig
         sight->own.low[d] = low > begin ? low : begin;
         sight->own.high[d] = high < end ? high : end;
     }
-    sight->bears = ref_cracked_bears(sight->samples, s);
+    sight->bears = ref_cracked_bears(cracked, sight->cell, s);
     sight->open =
         sight->whole || !ref_cracks_look(&cracked->cracks, sight->near.low, sight->near.high);
 }

@@ -23,11 +23,11 @@ static void find_principal(RefFaceStress *stress)
     double principal = ref_thin_principal((const double(*)[2])mixed);
     double v[2] = {mixed[0][1], principal - mixed[0][0]};
     double w[2] = {principal - mixed[1][1], mixed[1][0]};
-    if (hypot(w[0], w[1]) > hypot(v[0], v[1])) memcpy(v, w, sizeof v);
+    if (w[0] * w[0] + w[1] * w[1] > v[0] * v[0] + v[1] * v[1]) memcpy(v, w, sizeof v);
     stress->principal = principal;
     stress->along[0] = -(g[2] * v[0] + g[1] * v[1]);
     stress->along[1] = g[0] * v[0] + g[2] * v[1];
-    double length = hypot(stress->along[0], stress->along[1]);
+    double x = stress->along[0], y = stress->along[1], length = sqrt(x * x + y * y);
     for (int d = 0; d < 2; d++) stress->along[d] = length > 0 ? stress->along[d] / length : d == 0;
 }
 

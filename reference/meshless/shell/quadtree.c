@@ -3,6 +3,10 @@
 #include <math.h>
 #include <stdlib.h>
 
+enum { MOST_ACROSS = 16, CELLS_OF_ROOT = 16 };
+/* Fewer roots are preferred where more make cells no squarer than by this share of an edge. */
+static const double SQUARER = 0.01;
+
 void ref_quadtree_free(RefQuadtree *tree)
 {
     sm_free_all(tree->cell, tree->grid);
@@ -159,6 +163,35 @@ static int rectangles_of(const RefChart *chart)
     return chart->cylinders ? chart->cylinders->count : 1;
 }
 
+/* Along both sides of a rectangle; returns how much longer cells are one way than the other. */
+static double roots_along(const double side[2], int across, int roots[2])
+{
+    double shorter = fmin(side[0], side[1]);
+    for (int d = 0; d < 2; d++) roots[d] = (int)fmax(rint(across * side[d] / shorter), 1);
+    double share = side[0] / roots[0] / (side[1] / roots[1]);
+    return fmax(share, 1 / share);
+}
+
+int ref_quadtree_across(const RefChart *chart, long wanted)
+{
+    double least = INFINITY;
+    int best = 1;
+    for (int across = 1; across <= MOST_ACROSS; across++) {
+        double cells = 0, longest = 1, low[2], side[2];
+        for (int g = 0; g < rectangles_of(chart); g++) {
+            int roots[2];
+            sides_of(chart, g, low, side);
+            longest = fmax(longest, roots_along(side, across, roots));
+            cells += roots[0] * (double)roots[1];
+        }
+        if (across > 1 && cells * CELLS_OF_ROOT > (double)wanted) break;
+        if (!(longest < least - SQUARER)) continue;
+        least = longest;
+        best = across;
+    }
+    return best;
+}
+
 static void plant(const RefChart *chart, int across, RefQuadtree *tree)
 {
     int whole = 1 << REF_QUADTREE_LEVELS;
@@ -168,11 +201,8 @@ static void plant(const RefChart *chart, int across, RefQuadtree *tree)
         RefRootGrid *grid = tree->grid + g;
         double side[2];
         sides_of(chart, g, grid->low, side);
-        double shorter = fmin(side[0], side[1]);
-        for (int d = 0; d < 2; d++) {
-            grid->roots[d] = (int)fmax(rint(across * side[d] / shorter), 1);
-            grid->unit[d] = side[d] / grid->roots[d] / whole;
-        }
+        roots_along(side, across, grid->roots);
+        for (int d = 0; d < 2; d++) grid->unit[d] = side[d] / grid->roots[d] / whole;
         grid->first = (int)tree->count;
         tree->count += (long)grid->roots[0] * grid->roots[1];
     }

@@ -43,7 +43,13 @@ enum { REF_QUADTREE_LEVELS = 14, REF_MOST_CELLS = 1 << 20 };
 SmCode ref_quadtree_build(const RefChart *chart, int across, double threshold, RefQuadtree *tree,
                           SmError *error);
 
-/* The same with a threshold that gives as close to `wanted` terminal cells as bisection finds. */
+/* How many roots along shorter sides make cells squares as nearly as a sixteenth of the wanted
+ * cells can: covers are squares of longer edges, and reach one node in four more where these are a
+ * third longer. */
+int ref_quadtree_across(const RefChart *chart, long wanted);
+
+/* ref_quadtree_build() with a threshold that gives as close to `wanted` terminal cells as bisection
+ * finds. */
 SmCode ref_quadtree_of(const RefChart *chart, int across, long wanted, RefQuadtree *tree,
                        SmError *error);
 void ref_quadtree_free(RefQuadtree *tree);

@@ -6,8 +6,9 @@
 #include "thin.h"
 
 typedef struct {
-    int across;     /* cells along the chart's shorter side before any is split */
-    long nodes;     /* wanted; 0: one in each of those cells */
+    int across;     /* cells along the chart's shorter side before any is split; 0: as many as make
+                       them nearly squares */
+    long nodes;     /* wanted; 0: one in each of those cells, of which there are some then */
     RefBasis basis; /* of a plane */
     double eta;     /* covers' edges in those of their cells; 0: 4, of the quadratic basis 6 */
     double thickness;

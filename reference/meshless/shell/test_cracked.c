@@ -524,13 +524,15 @@ TEST(ways_to_a_grid_are_ways_to_its_places)
 
 /* How far a place is from the nearest of a cell's samples that no crack parts from it, of all or of
  * those that bear it. */
-static double distance_to_samples(const RefCracked *cracked, const RefSamples *samples, bool all,
+static double distance_to_samples(const RefCracked *cracked, long c, bool all,
                                   const double theta[2])
 {
+    const RefSamples *samples = &cracked->cell[c].samples;
     double least = INFINITY;
     for (int n = 0; n < REF_SAMPLES_PER_CELL; n++) {
         const double *at = samples->theta[n];
-        if ((all || ref_cracked_bears(samples, n)) && !ref_cracks_part(&cracked->cracks, theta, at))
+        if ((all || ref_cracked_bears(cracked, c, n)) &&
+            !ref_cracks_part(&cracked->cracks, theta, at))
             least = fmin(least, hypot(at[0] - theta[0], at[1] - theta[1]));
     }
     return least;
@@ -558,7 +560,7 @@ TEST(places_have_functions_of_samples_that_bear_them)
                 theta[d] = middle[d] + edge[d] * random_between(&seed, -0.5, 0.5);
             const RefSamples *samples = &cracked->cell[c].samples;
             int n = ref_cracked_sample(cracked, c, theta);
-            for (int k = 0; k < 2; k++) least[k] = distance_to_samples(cracked, samples, k, theta);
+            for (int k = 0; k < 2; k++) least[k] = distance_to_samples(cracked, c, k, theta);
             double wanted = least[isinf(least[0])], near = 1e-3 * edge[0];
             assert_int_equal(n < 0, isinf(wanted));
             none += n < 0;

@@ -84,6 +84,43 @@ TEST(cells_are_even_on_the_surface)
     }
 }
 
+/* How much longer the roots' cells are one way than the other, and how many there are. */
+static double shape_of_roots(const RefChart *chart, int across, double *roots)
+{
+    double side[2], count[2];
+    for (int d = 0; d < 2; d++) side[d] = chart->high[d] - chart->low[d];
+    for (int d = 0; d < 2; d++)
+        count[d] = fmax(round(across * side[d] / fmin(side[0], side[1])), 1);
+    double share = side[0] / count[0] / (side[1] / count[1]);
+    *roots = count[0] * count[1];
+    return fmax(share, 1 / share);
+}
+
+/* Beside all numbers that few enough cells allow. */
+TEST(roots_make_cells_nearly_squares)
+{
+    int more = 0;
+    for (int trial = 0; trial < 300; trial++) {
+        RefChart chart = {.high = {1, random_between(&seed, 0.2, 5)}};
+        long wanted = random_int(&seed, 1500) + 1;
+        double roots, least = INFINITY;
+        int across = ref_quadtree_across(&chart, wanted);
+        double found = shape_of_roots(&chart, across, &roots);
+        assert_true(across == 1 || 16 * roots <= (double)wanted);
+        for (int other = 1; other <= 16; other++) {
+            double shape = shape_of_roots(&chart, other, &roots);
+            if (other > 1 && 16 * roots > (double)wanted) break;
+            if (other < across) assert_true(found < shape - 0.01);
+            least = fmin(least, shape);
+        }
+        assert_true(found < least + 0.01 + 1e-9);
+        more += across > 1;
+    }
+    assert_true(more > 50);
+    assert_int_equal(ref_quadtree_across(&(RefChart){.high = {3, 4}}, 420), 3);
+    assert_int_equal(ref_quadtree_across(&(RefChart){.high = {2, 1}}, 420), 1);
+}
+
 TEST(charts_without_cells_are_refused)
 {
     Waves waves;

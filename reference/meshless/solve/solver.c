@@ -164,6 +164,40 @@ static cholmod_factor *analyse_by_nodes(cholmod_sparse *matrix, const RefSparse 
     return symbolic;
 }
 
+/* The places of three parameters a node from those of one, in the order of the nodes, which CHOLMOD
+ * would find again: supernodes, their rows and all counts are three times as many. */
+static cholmod_factor *triple(const cholmod_factor *nodes, cholmod_common *common)
+{
+    size_t supers = nodes->nsuper + 1;
+    cholmod_factor *all = cholmod_allocate_factor(3 * nodes->n, common);
+    if (!all) return NULL;
+    all->is_super = all->is_ll = true;
+    all->ordering = CHOLMOD_NATURAL;
+    all->nsuper = nodes->nsuper;
+    all->ssize = 3 * nodes->ssize;
+    all->xsize = 9 * nodes->xsize;
+    all->maxcsize = 9 * nodes->maxcsize;
+    all->maxesize = 3 * nodes->maxesize;
+    all->super = cholmod_malloc(supers, sizeof(int), common);
+    all->pi = cholmod_malloc(supers, sizeof(int), common);
+    all->px = cholmod_malloc(supers, sizeof(int), common);
+    all->s = cholmod_malloc(all->ssize, sizeof(int), common);
+    if (common->status != CHOLMOD_OK) {
+        cholmod_free_factor(&all, common);
+        return NULL;
+    }
+    for (size_t n = 0; n < supers; n++) {
+        ((int *)all->super)[n] = 3 * ((int *)nodes->super)[n];
+        ((int *)all->pi)[n] = 3 * ((int *)nodes->pi)[n];
+        ((int *)all->px)[n] = 9 * ((int *)nodes->px)[n];
+    }
+    for (size_t e = 0; e < all->ssize; e++)
+        ((int *)all->s)[e] = 3 * ((int *)nodes->s)[e / 3] + (int)(e % 3);
+    for (size_t c = 0; c < all->n; c++)
+        ((int *)all->ColCount)[c] = 3 * ((int *)nodes->ColCount)[c / 3] - (int)(c % 3);
+    return all;
+}
+
 /* The order and the places of a factor's entries: those of another solver; of nodes' parameters the
  * order of the nodes, in which the matrix may be; of others as CHOLMOD finds best. */
 static cholmod_factor *analyse(const RefSolver *like, const RefMatrices *matrices,
@@ -171,6 +205,7 @@ static cholmod_factor *analyse(const RefSolver *like, const RefMatrices *matrice
 {
     cholmod_common *common = &solver->common;
     if (like && like->size == solver->size) return cholmod_copy_factor(like->symbolic, common);
+    if (like && like->symbolic->is_super) return triple(like->symbolic, common);
     if (solver->place) {
         common->nmethods = 1;
         common->method[0].ordering = CHOLMOD_NATURAL;
