@@ -244,28 +244,36 @@ static SmCode outline_points(const char *path, RefPoints *points, RefMpu *given,
     return code ? sm_fail(error, code, "%s: %s", path, why.text) : SM_OK;
 }
 
-/* A mesh, or for meshless bodies points. */
-static SmCode load_body(const Options *options, const BenchEngine *engine, RefMpu *given,
-                        SmMesh *mesh, SmError *error)
+/* What there is of a body before its scene: a mesh, of points their surface. */
+typedef struct {
+    SmMesh mesh;
+    RefMpu given;   /* of a meshless body's points, */
+    bool of_points; /* and of a shell's the mesh is of triangles between them */
+} Loaded;
+
+/* A mesh, or for meshless bodies and shells points. */
+static SmCode load_body(const Options *options, const BenchEngine *engine, Loaded *loaded,
+                        SmError *error)
 {
     const char *name = options->scene;
+    SmMesh *mesh = &loaded->mesh;
     RefPoints points;
-    if (!(engine->own & (BENCH_OF_ELASTIC | BENCH_OF_SHELL)))
-        return bench_mesh_load(name, mesh, error);
+    if (engine->own & BENCH_OF_SHELL)
+        return bench_sheet_load(name, mesh, &loaded->of_points, error);
+    if (!(engine->own & BENCH_OF_ELASTIC)) return bench_mesh_load(name, mesh, error);
     SmCode code = bench_points_or_mesh(name, &points, mesh, error);
     if (code || !points.count) return code;
     if (bench_given(&options->chosen.given, "points")) {
         ref_points_free(&points);
         return sm_fail(error, SM_USAGE, "--points are taken of a mesh, and %s has its own", name);
     }
-    return outline_points(name, &points, given, mesh, error);
+    return outline_points(name, &points, &loaded->given, mesh, error);
 }
 
 /* A scene's name or file; anything else is a mesh, or the surface of points that are given. */
-static SmCode load(const Options *options, BenchScene *scene, RefMpu *given, SmMesh *mesh,
-                   SmError *error)
+static SmCode load(const Options *options, BenchScene *scene, Loaded *loaded, SmError *error)
 {
-    *given = (RefMpu){0};
+    *loaded = (Loaded){.of_points = false};
     const char *name = options->scene;
     size_t length = strlen(name);
     bool file = length > 4 && !strcmp(name + length - 4, ".cfg");
@@ -278,7 +286,7 @@ static SmCode load(const Options *options, BenchScene *scene, RefMpu *given, SmM
         if (chosen->count && !substitute)
             return sm_fail(error, SM_USAGE, "--mesh: '%s' is not this scene, %s", chosen->scene[0],
                            scene->name);
-        return bench_mesh_of_scene(scene, substitute, mesh, error);
+        return bench_mesh_of_scene(scene, substitute, &loaded->mesh, error);
     }
     if (options->chosen.substitutes.count)
         return sm_fail(error, SM_USAGE, "--mesh goes with a scene, and %.100s is a mesh itself",
@@ -287,10 +295,10 @@ static SmCode load(const Options *options, BenchScene *scene, RefMpu *given, SmM
         return sm_fail(error, SM_INPUT, "%.100s...: the path is too long", name);
     const char *chosen = options->chosen.engine;
     const BenchEngine *engine = bench_engine(chosen ? chosen : "");
-    SmCode code = load_body(options, engine, given, mesh, error);
+    SmCode code = load_body(options, engine, loaded, error);
     if (code) return code;
-    bench_scene_drop(mesh, name, scene);
-    if (engine->adapt) engine->adapt(mesh, scene);
+    bench_scene_drop(&loaded->mesh, name, scene);
+    if (engine->adapt) engine->adapt(&loaded->mesh, scene);
     return SM_OK;
 }
 
@@ -487,12 +495,11 @@ static SmCode run(const Options *options, const BenchMachine *machine, SmError *
 {
     BenchScene scene;
     const SmEngineType *type;
-    RefMpu given;
-    SmMesh mesh;
+    Loaded loaded;
     BenchBody body;
     BenchPlayback play;
     char room[BENCH_NAME + 8];
-    SmCode code = load(options, &scene, &given, &mesh, error);
+    SmCode code = load(options, &scene, &loaded, error);
     if (code) return code;
     apply_options(options, &scene);
     const BenchEngine *engine = bench_engine(scene.engine);
@@ -501,13 +508,14 @@ static SmCode run(const Options *options, const BenchMachine *machine, SmError *
     if (!code) code = apply_w(options, engine, &scene, error);
     const char *path = output_path(options, &scene, room);
     if (!code) code = reserve(options, path, error);
-    if (!code) code = bench_body_create(&scene, &mesh, &body, error);
+    if (!code) code = bench_body_create(&scene, &loaded.mesh, &body, error);
     if (code) {
-        sm_mesh_free(&mesh);
-        ref_mpu_free(&given);
+        sm_mesh_free(&loaded.mesh);
+        ref_mpu_free(&loaded.given);
         return code;
     }
-    if (given.count) body.given = &given;
+    if (loaded.given.count) body.given = &loaded.given;
+    body.of_points = loaded.of_points;
     code = bench_playback_create(&scene, &body, type, options->common.threads, options->common.seed,
                                  &play, error);
     if (!code) {
@@ -515,7 +523,7 @@ static SmCode run(const Options *options, const BenchMachine *machine, SmError *
         bench_playback_free(&play);
     }
     bench_body_free(&body);
-    ref_mpu_free(&given);
+    ref_mpu_free(&loaded.given);
     return code;
 }
 

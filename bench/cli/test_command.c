@@ -164,7 +164,7 @@ TEST(files_that_cannot_be_used_are_named)
          "3 modes were found that deform the body: --modes 10 finds more"},
         {"run two.obj --engine meshless --nodes 200 --points 1000 --modes 20 --mode 2 --no-output",
          2, "--mode 2: it deforms nothing, because the body is in pieces"},
-        {"run beam-elastic --basis cubic", 2, "'cubic' is not one of linear, quadratic"},
+        {"run beam-elastic --basis cubic", 2, "'cubic' is not one of usual, linear, quadratic"},
         {"run beam-elastic --w 2", 2, "--w: a meshless body has no regions"},
         {"run lattice.cfg --w 32", 2, "--w: '32' is not a whole number from 1 to 31"},
         {"run tiny.cfg --mesh x=y", 2, "'x' is not a built-in scene"},

@@ -218,6 +218,7 @@ RefMeshlessOptions bench_meshless_options(const BenchScene *scene, const BenchBo
     RefMeshlessOptions options = scene->meshless;
     options.mesh = &body->mesh;
     options.given = body->given;
+    options.of_points = body->of_points;
     options.stored = body->stored;
     options.material.young /= scene->metre;
     options.strength /= scene->metre;

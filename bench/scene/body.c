@@ -21,17 +21,32 @@ SmCode bench_mesh_load(const char *mesh, SmMesh *result, SmError *error)
     return sm_import(mesh, NULL, result, error);
 }
 
-SmCode bench_points_or_mesh(const char *path, RefPoints *points, SmMesh *mesh, SmError *error)
+/* Whether a file is of points: text, or a PLY file that is no mesh. Else its mesh is read. */
+static bool has_points(const char *path, SmMesh *mesh, SmCode *code, SmError *error)
 {
     const char *dot = strrchr(path, '.');
     bool ply = dot && !strcasecmp(dot, ".ply");
+    *mesh = (SmMesh){0};
+    *code = SM_OK;
+    if (ref_points_text(path)) return true;
+    *code = bench_mesh_load(path, mesh, ply ? NULL : error);
+    if (*code == SM_OK || !ply) return false;
+    *mesh = (SmMesh){0};
+    return true;
+}
+
+SmCode bench_points_or_mesh(const char *path, RefPoints *points, SmMesh *mesh, SmError *error)
+{
+    SmCode code;
     *points = (RefPoints){0};
-    *mesh = (SmMesh){0};
-    if (ref_points_text(path)) return ref_points_read(path, points, error);
-    if (!ply) return bench_mesh_load(path, mesh, error);
-    if (!bench_mesh_load(path, mesh, NULL)) return SM_OK;
-    *mesh = (SmMesh){0};
-    return ref_points_read(path, points, error);
+    return has_points(path, mesh, &code, error) ? ref_points_read(path, points, error) : code;
+}
+
+SmCode bench_sheet_load(const char *path, SmMesh *mesh, bool *of_points, SmError *error)
+{
+    SmCode code;
+    *of_points = has_points(path, mesh, &code, error);
+    return *of_points ? ref_points_triangles(path, mesh, error) : code;
 }
 
 static SmBox box_of(const SmMesh *mesh)

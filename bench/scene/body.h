@@ -8,6 +8,7 @@
 typedef struct BenchBody {
     SmMesh mesh;
     const RefMpu *given; /* of points whose surface the mesh is, the caller's; NULL: a mesh alone */
+    bool of_points;      /* its triangles are those between points, which are its vertices */
     const RefStored *stored; /* what the meshless engine takes in place of the mesh, the caller's */
     SmVoxels voxels;
     double low[3], high[3]; /* the mesh's bounding box */
@@ -28,6 +29,10 @@ SmCode bench_mesh_load(const char *mesh, SmMesh *result, SmError *error);
  * else a mesh, as bench_mesh_load(), into `mesh`. The other one is zeroed, so that both can be
  * freed. Errors: those of reading either. */
 SmCode bench_points_or_mesh(const char *path, RefPoints *points, SmMesh *mesh, SmError *error);
+
+/* Reads a shell's mesh: as bench_mesh_load(), or of such a file of points, with normals or
+ * without, that of the triangles between them, and sets `of_points`. */
+SmCode bench_sheet_load(const char *path, SmMesh *mesh, bool *of_points, SmError *error);
 
 /* Reads the scene's mesh; or, unless NULL, the mesh file `substitute` in its place: scaled evenly
  * to the same largest extent, standing on the same height, centred on the same vertical axis, so

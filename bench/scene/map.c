@@ -18,19 +18,15 @@ enum { SCHEMA = 1 };
 
 static SmCode map_surface(const char *source, RefSurfaceMap *map, double *longest, SmError *error)
 {
-    RefPoints points;
     SmMesh mesh;
     SmError why;
-    SmCode code = bench_points_or_mesh(source, &points, &mesh, error);
+    bool of_points;
+    SmCode code = bench_sheet_load(source, &mesh, &of_points, error);
     if (code != SM_OK) return code;
-    bool given = points.count > 0;
-    SmBox box = given ? sm_box_around(points.given, CONST(points.as_given))
-                      : sm_box_around(mesh.vertex_count, CONST(mesh.position));
+    SmBox box = sm_box_around(mesh.vertex_count, CONST(mesh.position));
     *longest = sm_box_longest(&box);
-    code = given ? ref_surface_map_of_points(points.given, CONST(points.as_given), NULL,
-                                             "the points", map, &why)
-                 : ref_surface_map_create(&mesh, "the mesh", map, &why);
-    ref_points_free(&points);
+    code = of_points ? ref_surface_map_of_triangles(&mesh, "the points", map, &why)
+                     : ref_surface_map_create(&mesh, "the mesh", map, &why);
     sm_mesh_free(&mesh);
     return code == SM_OK ? SM_OK : sm_fail(error, code, "%s: %s", source, why.text);
 }

@@ -218,10 +218,10 @@ static const BenchSetting meshless_table[] = {
      BOTH("poisson", "NU", "Poisson's ratio, above -1 to 0.49 (default: 0.3)")},
     {"density", BENCH_IN(BenchScene, meshless.material.density), 1e-30, 1e30,
      BOTH("density", "RHO", "kg/m^3 (default: 1000)")},
-    {"basis", BENCH_IN(BenchScene, meshless.basis), BENCH_ONE_OF("linear", "quadratic"),
-     MESHLESS("basis", "WHICH",
-              "the functions that nodes' shape functions reproduce: %s; quadratic ones cost "
-              "far more a node (default: linear)")},
+    {"basis", BENCH_IN(BenchScene, meshless.basis), BENCH_ONE_OF("usual", "linear", "quadratic"),
+     BOTH("basis", "WHICH",
+          "the functions that nodes' shape functions reproduce: %s; quadratic ones cost far more a "
+          "node (usual: linear, of shells quadratic unless the scene says covers)")},
     {"modes", BENCH_IN(BenchScene, meshless.modes), 7, 1000,
      MESHLESS("modes", "N", "natural modes, 7 to 1000 (default: 64)")},
     {"points", BENCH_IN(BenchScene, meshless.points), REF_LEAST_POINTS, REF_MOST_POINTS,
@@ -231,8 +231,8 @@ static const BenchSetting meshless_table[] = {
     {"thickness", BENCH_IN(BenchScene, meshless.thickness), 0, FAR,
      SHELL("thickness", "T", "in the mesh's units (default: a hundredth of its longest extent)")},
     {"covers", BENCH_IN(BenchScene, meshless.covers), 0, 100,
-     SAYS("A shell's functions are linear, of covers as many edges of their cells wide (3 in the "
-          "paper); 0: quadratic, of covers six edges wide")},
+     SAYS("A shell's covers, in edges of their cells (3 in the paper), usually with the linear "
+          "basis; 0: 4 with that, 6 with the quadratic one")},
     {"strength", BENCH_IN(BenchScene, meshless.strength), 0, 1e30,
      SHELL("strength", "S",
            "it cracks where its largest principal stress is above S Pa (default: "

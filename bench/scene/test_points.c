@@ -95,6 +95,44 @@ static void read_all(hid_t file, const char *name, hid_t type, size_t bytes, voi
     H5Dclose(dataset);
 }
 
+/* Open and bare clouds and such with doubled points are shells by the triangles between them:
+ * points are vertices in their order, and come apart. */
+TEST(clouds_are_shells)
+{
+    needs_solver();
+    Result result;
+    static const struct {
+        Ball ball;
+        const char *shape;
+    } cloud[] = {{{600, 1, 0, -1, false, false}, "of a sphere"},
+                 {{600, 1, 0, -1, false, true}, "of a sphere"},
+                 {{600, 1, 0, -1, true, false}, "of a sphere"},
+                 {{500, 2, 0, -1, true, false}, "of a sphere"},
+                 {{600, 1, 0, 0.3, false, false}, "of a disk"},
+                 {{600, 1, 0, 0.3, true, false}, "of a disk"}};
+    for (size_t n = 0; n < sizeof cloud / sizeof *cloud; n++) {
+        write_text_ball("cloud.xyz", &cloud[n].ball);
+        run("run cloud.xyz --engine shell --nodes 150 --frames 2 --overwrite -o a.vtkhdf", &result);
+        if (result.code || !strstr(result.out, cloud[n].shape))
+            fail_msg("%zu: %d, %s%s", n, result.code, result.out, result.err);
+        hid_t file = H5Fopen(path_in("a.vtkhdf"), H5F_ACC_RDONLY, H5P_DEFAULT);
+        double still[1000][3], first[3];
+        int count = cloud[n].ball.count * cloud[n].ball.copies;
+        read_all(file, "frames/0", H5T_NATIVE_DOUBLE, (size_t)count * sizeof *still, still);
+        H5Fclose(file);
+        FILE *given = fopen(path_in("cloud.xyz"), "r");
+        for (int p = 0; p < count; p++) {
+            assert_int_equal(fscanf(given, "%lf %lf %lf%*[^\n]", first, first + 1, first + 2), 3);
+            for (int d = 0; d < 3; d++) assert_true(fabs(still[p][d] - first[d]) < 1e-6);
+        }
+        fclose(given);
+    }
+    run("run cloud.xyz --engine shell --nodes 150 --strength 1e-3 --frames 4 --no-output", &result);
+    if (result.code) fail_msg("%d, %s", result.code, result.err);
+    run("info cloud.xyz --map", &result);
+    if (result.code || !strstr(result.out, "disk")) fail_msg("%s%s", result.out, result.err);
+}
+
 /* All given points, doubles too, are carried and written in their order, as cells of one corner. */
 TEST(given_points_are_written_as_they_are_given)
 {

@@ -56,7 +56,8 @@ SmCode ref_elastic_body(const RefMeshlessOptions *options, bool cuttable, long *
     RefBodyOptions body = {.nodes = options->nodes > 0 ? options->nodes : REF_MESHLESS_NODES,
                            .within = own ? 0.01 : 0,
                            .coarser = options->uniform ? 0 : 1,
-                           .basis = options->basis ? REF_MLS_QUADRATIC : REF_MLS_LINEAR,
+                           .basis = options->basis == REF_MESHLESS_QUADRATIC ? REF_MLS_QUADRATIC
+                                                                             : REF_MLS_LINEAR,
                            .material = options->material};
     code = ref_body_build(&field, &body, *count, (const double(*)[3]) * x, &elastic->body, error);
     elastic->field_seconds = built - start;

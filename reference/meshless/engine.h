@@ -37,24 +37,26 @@ enum {
 };
 
 typedef struct RefStored RefStored; /* stored.h */
-typedef enum { REF_MESHLESS_LINEAR, REF_MESHLESS_QUADRATIC } RefMeshlessBasis;
+/* USUAL: of solids linear, of shells quadratic, or linear where they have `covers`. */
+typedef enum { REF_MESHLESS_USUAL, REF_MESHLESS_LINEAR, REF_MESHLESS_QUADRATIC } RefMeshlessBasis;
 
 struct RefMeshlessOptions {
     const SmMesh *mesh;      /* the body's closed surface, read by create() only */
-    const RefMpu *given;     /* NULL, or the field of points that were given: they are carried, too;
-                              * the caller's, and kept of a body that may be cut */
+    const RefMpu *given;     /* NULL, or of a solid the field of points that were given: they are
+                              * carried, too; the caller's, and kept of a body that may be cut */
+    bool of_points;          /* a shell's mesh is of triangles between points (local_triangles.h) */
     const RefStored *stored; /* NULL, or the body and its modes (stored.h): none are sought then */
     long points;  /* on the mesh's surface, of which the field is made without `given`; 0:
                    * REF_MESHLESS_POINTS, of thin bodies more, to REF_MESHLESS_MOST_POINTS */
     long nodes;   /* wanted; 0: REF_MESHLESS_NODES */
     bool uniform; /* octants are all of one size; false: inside they may be twice as large */
     int modes;    /* 0: REF_MESHLESS_MODES, or half of what there is */
-    RefMeshlessBasis basis; /* of a solid's shape functions (meshless eq. 11); covers of the
+    RefMeshlessBasis basis; /* of the shape functions (meshless eq. 11); a solid's covers of the
                              * quadratic one are twice as wide */
     double thickness;       /* of a shell, mesh units; 0: REF_SHELL_THIN (shell_engine.h) of its
                              * longest extent */
-    double covers;    /* of a shell with linear functions: how wide covers are, in edges of their
-                       * cells; 0: quadratic functions of covers six edges wide */
+    double covers;    /* of a shell: how wide they are, in edges of their cells; 0: 4 of the linear
+                       * basis, 6 of the quadratic one */
     double strength;  /* of a shell that breaks, Pa as `material` has it; 0: it does not */
     double branching; /* times the strength from which on a crack goes on in two; 0: never */
     double pressure;  /* inside a closed shell, along its normals at rest, for */

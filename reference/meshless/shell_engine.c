@@ -65,18 +65,15 @@ static void carry(SmEngine *engine)
                    body->carried);
 }
 
-/* The particles, and their map: the points that were given, or the mesh's vertices. */
+/* The particles, the mesh's vertices, and their map. */
 static SmCode map_surface(const RefMeshlessOptions *options, SmEngine *engine, SmError *error)
 {
-    const RefPoints *points = options->given ? &options->given->points : NULL;
     const SmMesh *mesh = options->mesh;
-    engine->count = points ? points->given : mesh->vertex_count;
-    engine->rest = sm_alloc((size_t)engine->count, sizeof *engine->rest);
-    memcpy(engine->rest, points ? points->as_given : mesh->position,
-           (size_t)engine->count * sizeof *engine->rest);
-    return points ? ref_surface_map_of_points(engine->count, CONST(engine->rest), NULL,
-                                              "the points", &engine->body.map, error)
-                  : ref_surface_map_create(mesh, "the mesh", &engine->body.map, error);
+    engine->count = mesh->vertex_count;
+    engine->rest = sm_copy(mesh->position, (size_t)engine->count, sizeof *engine->rest);
+    return options->of_points
+               ? ref_surface_map_of_triangles(mesh, "the points", &engine->body.map, error)
+               : ref_surface_map_create(mesh, "the mesh", &engine->body.map, error);
 }
 
 /* Cells are split where a crack takes more than a quarter of a cover, once. */
@@ -95,12 +92,14 @@ static SmCode make_breaking(const RefMeshlessOptions *options, SmEngine *engine,
 
 RefShellOptions ref_shell_options(const RefMeshlessOptions *options, double longest)
 {
-    return (RefShellOptions){
-        .nodes = options->nodes > 0 ? options->nodes : REF_SHELL_NODES,
-        .basis = options->covers > 0 ? REF_MLS_PLANE_LINEAR : REF_MLS_PLANE_QUADRATIC,
-        .eta = options->covers,
-        .thickness = options->thickness > 0 ? options->thickness : REF_SHELL_THIN * longest,
-        .material = options->material};
+    bool linear = options->basis == REF_MESHLESS_USUAL ? options->covers > 0
+                                                       : options->basis == REF_MESHLESS_LINEAR;
+    return (RefShellOptions){.nodes = options->nodes > 0 ? options->nodes : REF_SHELL_NODES,
+                             .basis = linear ? REF_MLS_PLANE_LINEAR : REF_MLS_PLANE_QUADRATIC,
+                             .eta = options->covers,
+                             .thickness = options->thickness > 0 ? options->thickness
+                                                                 : REF_SHELL_THIN * longest,
+                             .material = options->material};
 }
 
 /* Functions of a shell that does not break are not kept: they are taken once more. */
@@ -189,9 +188,6 @@ static SmCode shell_create(const SmVoxels *voxels, const SmEngineParams *params,
 {
     SmCode code = ref_meshless_check(voxels, params, error);
     if (code != SM_OK) return code;
-    if (params->meshless->strength > 0 && params->meshless->given)
-        return sm_fail(error, SM_INPUT,
-                       "strength: points without triangles do not come apart; give a mesh");
     SmEngine *engine = sm_alloc(1, sizeof *engine);
     sm_engine_pose(params, 0, engine->pose);
     code = make_sheet(params, engine, error);

@@ -761,6 +761,15 @@ SmCode ref_surface_map_create(const SmMesh *mesh, const char *name, RefSurfaceMa
     return code;
 }
 
+SmCode ref_surface_map_of_triangles(const SmMesh *mesh, const char *name, RefSurfaceMap *map,
+                                    SmError *error)
+{
+    double from = sm_now();
+    SmCode code = map_mesh(mesh, name, 0.05, 12, map, error);
+    map->seconds = sm_now() - from;
+    return code;
+}
+
 SmCode ref_surface_map_of_points(long count, const double (*position)[3], const double (*normal)[3],
                                  const char *name, RefSurfaceMap *map, SmError *error)
 {
@@ -769,7 +778,7 @@ SmCode ref_surface_map_of_points(long count, const double (*position)[3], const 
     *map = (RefSurfaceMap){.surface = NULL};
     SmCode code = ref_local_triangles(count, position, normal, name, &mesh, error);
     if (code != SM_OK) return code;
-    code = map_mesh(&mesh, name, 0.05, 12, map, error);
+    code = ref_surface_map_of_triangles(&mesh, name, map, error);
     sm_mesh_free(&mesh);
     map->seconds = sm_now() - from;
     return code;

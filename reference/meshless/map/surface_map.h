@@ -68,10 +68,12 @@ typedef struct {
 SmCode ref_surface_map_create(const SmMesh *mesh, const char *name, RefSurfaceMap *map,
                               SmError *error);
 
-/* The same of points, by the triangles between them (surface/local_triangles.h), of which pieces of
- * up to 5% are dropped; rims of up to twelve edges are closed, too, up
- * to half the root of the area. `normal` may be NULL. Errors
- * also: local_triangles.h's. */
+/* The same of triangles between points (surface/local_triangles.h), of which pieces of up to 5% are
+ * dropped; rims of up to twelve edges are closed, too, up to half the root of the area. */
+SmCode ref_surface_map_of_triangles(const SmMesh *mesh, const char *name, RefSurfaceMap *map,
+                                    SmError *error);
+
+/* Of points, by such triangles. `normal` may be NULL. Errors also: local_triangles.h's. */
 SmCode ref_surface_map_of_points(long count, const double (*position)[3], const double (*normal)[3],
                                  const char *name, RefSurfaceMap *map, SmError *error);
 

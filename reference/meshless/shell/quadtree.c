@@ -3,9 +3,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { MOST_ACROSS = 16, CELLS_OF_ROOT = 16 };
-/* Fewer roots are preferred where more make cells no squarer than by this share of an edge. */
-static const double SQUARER = 0.01;
+enum { MOST_ACROSS = 32, CELLS_OF_ROOT = 16 };
+/* Fewer roots are preferred where more make cells no squarer than by this share of an edge; other
+ * roots are tried for a tree of more nodes or fewer than by that share, if they make cells longer
+ * by no more than the last. */
+static const double SQUARER = 0.01, NEAR = 0.05, LONGER = 1.1;
 
 void ref_quadtree_free(RefQuadtree *tree)
 {
@@ -172,18 +174,27 @@ static double roots_along(const double side[2], int across, int roots[2])
     return fmax(share, 1 / share);
 }
 
+/* How much longer the roots' cells are one way than the other, and how many there are. */
+static double shape_of_roots(const RefChart *chart, int across, double *cells)
+{
+    double longest = 1;
+    *cells = 0;
+    for (int g = 0; g < rectangles_of(chart); g++) {
+        double low[2], side[2];
+        int roots[2];
+        sides_of(chart, g, low, side);
+        longest = fmax(longest, roots_along(side, across, roots));
+        *cells += roots[0] * (double)roots[1];
+    }
+    return longest;
+}
+
 int ref_quadtree_across(const RefChart *chart, long wanted)
 {
-    double least = INFINITY;
+    double least = INFINITY, cells;
     int best = 1;
     for (int across = 1; across <= MOST_ACROSS; across++) {
-        double cells = 0, longest = 1, low[2], side[2];
-        for (int g = 0; g < rectangles_of(chart); g++) {
-            int roots[2];
-            sides_of(chart, g, low, side);
-            longest = fmax(longest, roots_along(side, across, roots));
-            cells += roots[0] * (double)roots[1];
-        }
+        double longest = shape_of_roots(chart, across, &cells);
         if (across > 1 && cells * CELLS_OF_ROOT > (double)wanted) break;
         if (!(longest < least - SQUARER)) continue;
         least = longest;
@@ -307,6 +318,53 @@ void ref_quadtree_add_nodes(const RefQuadtree *tree, const RefCell *cell, double
         }
         if (rim) nodes->reach[nodes->count++] = eta / 2 * ref_quadtree_edge(tree, cell);
     }
+}
+
+/* How many ref_quadtree_nodes() makes. */
+static long count_nodes(const RefQuadtree *tree)
+{
+    long count = 0;
+    for (long c = 0; c < tree->count; c++) {
+        double position[REF_MOST_CELL_NODES][3], reach[REF_MOST_CELL_NODES];
+        RefNodes own = {.position = position, .reach = reach};
+        if (tree->cell[c].child < 0) ref_quadtree_add_nodes(tree, tree->cell + c, 1, &own);
+        count += own.count;
+    }
+    return count;
+}
+
+/* The tree with so many nodes from such roots, of a second one that knows how many are on rims;
+ * kept if it is nearer than by `off`. */
+static SmCode try_roots(const RefChart *chart, int across, long wanted, RefQuadtree *tree,
+                        double *off, SmError *error)
+{
+    double cells = (double)wanted;
+    for (int trial = 0; trial < 2 && *off > NEAR; trial++) {
+        RefQuadtree other;
+        SmCode code = ref_quadtree_of(chart, across, (long)fmax(rint(cells), 1), &other, error);
+        if (code != SM_OK) return code;
+        double share = (double)count_nodes(&other) / (double)wanted;
+        bool nearer = fabs(log(share)) < *off;
+        cells = (double)other.leaves / share;
+        ref_quadtree_free(nearer ? tree : &other);
+        if (!nearer) continue;
+        *tree = other;
+        *off = fabs(log(share));
+    }
+    return SM_OK;
+}
+
+SmCode ref_quadtree_with(const RefChart *chart, long wanted, RefQuadtree *tree, SmError *error)
+{
+    int first = ref_quadtree_across(chart, wanted);
+    double cells, off = INFINITY, squarest = shape_of_roots(chart, first, &cells);
+    *tree = (RefQuadtree){0};
+    SmCode code = try_roots(chart, first, wanted, tree, &off, error);
+    for (int across = first + 1; across <= MOST_ACROSS && code == SM_OK && off > NEAR; across++)
+        if (shape_of_roots(chart, across, &cells) < LONGER * squarest && cells <= (double)wanted)
+            code = try_roots(chart, across, wanted, tree, &off, error);
+    if (code != SM_OK) ref_quadtree_free(tree);
+    return code;
 }
 
 void ref_quadtree_nodes(const RefQuadtree *tree, double eta, RefNodes *nodes)

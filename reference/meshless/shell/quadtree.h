@@ -52,6 +52,10 @@ int ref_quadtree_across(const RefChart *chart, long wanted);
  * finds. */
 SmCode ref_quadtree_of(const RefChart *chart, int across, long wanted, RefQuadtree *tree,
                        SmError *error);
+/* A tree that ref_quadtree_nodes() gives as nearly the wanted number of nodes, those on rims
+ * counted: of roots as ref_quadtree_across() says, or where they miss it by over 5%, as on sheets
+ * all of whose cells are split at once, of more that make cells nearly as square. */
+SmCode ref_quadtree_with(const RefChart *chart, long wanted, RefQuadtree *tree, SmError *error);
 void ref_quadtree_free(RefQuadtree *tree);
 
 /* The terminal cell at a place of the rectangle. O(levels). */

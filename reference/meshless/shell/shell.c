@@ -26,11 +26,12 @@ SmCode ref_shell_build(const RefChart *chart, const RefShellOptions *options, Re
 {
     RefSamples samples = {0};
     *shell = (RefShell){.chart = *chart, .basis = options->basis};
-    int across = options->across;
-    if (across == 0 && options->nodes) across = ref_quadtree_across(chart, options->nodes);
-    SmCode code = options->nodes
-                      ? ref_quadtree_of(&shell->chart, across, options->nodes, &shell->tree, error)
-                      : ref_quadtree_build(&shell->chart, across, INFINITY, &shell->tree, error);
+    SmCode code =
+        !options->nodes
+            ? ref_quadtree_build(&shell->chart, options->across, INFINITY, &shell->tree, error)
+        : !options->across
+            ? ref_quadtree_with(&shell->chart, options->nodes, &shell->tree, error)
+            : ref_quadtree_of(&shell->chart, options->across, options->nodes, &shell->tree, error);
     if (code != SM_OK) return code;
     ref_quadtree_nodes(&shell->tree, eta_of(options), &shell->nodes);
     code = ref_samples_take(&shell->tree, &shell->nodes, options->basis, &samples, error);

@@ -121,6 +121,27 @@ TEST(roots_make_cells_nearly_squares)
     assert_int_equal(ref_quadtree_across(&(RefChart){.high = {2, 1}}, 420), 1);
 }
 
+/* Nodes on rims counted, also where all cells are split at once. */
+TEST(trees_have_the_wanted_number_of_nodes)
+{
+    for (int trial = 0; trial < 24; trial++) {
+        Waves waves;
+        RefQuadtree tree;
+        RefNodes nodes;
+        RefChart chart =
+            chart_of_kind(&seed, trial % CHART_KINDS, 100, trial % 2 ? 0.7 : 0, &waves);
+        long wanted = random_int(&seed, 900) + 100;
+        assert_int_equal(ref_quadtree_with(&chart, wanted, &tree, NULL), SM_OK);
+        ref_quadtree_nodes(&tree, 6, &nodes);
+        double share = (double)nodes.count / (double)wanted;
+        if (!(fabs(share - 1) < 0.1))
+            fail_msg("kind %d: %ld of %ld", trial % CHART_KINDS, nodes.count, wanted);
+        check_balance(&tree);
+        ref_nodes_free(&nodes);
+        ref_quadtree_free(&tree);
+    }
+}
+
 TEST(charts_without_cells_are_refused)
 {
     Waves waves;

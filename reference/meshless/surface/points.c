@@ -10,6 +10,7 @@
 #include "../../../lib/mesh/import.h"
 #include "../../../lib/system/file.h"
 #include "../../../lib/vector.h"
+#include "local_triangles.h"
 
 enum { LINE = 1 << 20 };
 
@@ -144,14 +145,16 @@ static bool next_line(FILE *file, const char *path, long line, char *text, SmErr
     return false;
 }
 
-/* Six numbers of the line; false with `error` for others, and without for a line to be skipped. */
-static bool take_line(const char *text, const char *path, long line, bool first, double number[6],
-                      SmError *error)
+/* Six numbers of the line, or if it may be `bare` three and zeros; false with `error` for others,
+ * and without for a line to be skipped. */
+static bool take_line(const char *text, const char *path, long line, bool first, bool bare,
+                      double number[6], SmError *error)
 {
     const char *begin = text + strspn(text, " \t\r\n");
     if (*begin == 0 || *begin == '#') return false;
     int found = numbers(begin, number);
-    if (found == 6) return true;
+    if (bare && found == 3) memset(number + 3, 0, 3 * sizeof *number);
+    if (found == 6 || (bare && found == 3)) return true;
     if (found != 1 || !first)
         sm_fail(error, SM_INPUT,
                 found == 3
@@ -163,7 +166,7 @@ static bool take_line(const char *text, const char *path, long line, bool first,
 }
 
 /* All lines, positions and normals in turn; NULL and a reason where one is wrong. */
-static double (*read_lines(FILE *file, const char *path, long *count, SmError *error))[3]
+static double (*read_lines(FILE *file, const char *path, bool bare, long *count, SmError *error))[3]
 {
     double(*row)[3] = NULL, number[6];
     char *text = sm_alloc(LINE, 1);
@@ -171,7 +174,7 @@ static double (*read_lines(FILE *file, const char *path, long *count, SmError *e
     long room = 0;
     *count = 0;
     for (long line = 1; next_line(file, path, line, text, &why); line++) {
-        if (!take_line(text, path, line, *count == 0, number, &why)) {
+        if (!take_line(text, path, line, *count == 0, bare, number, &why)) {
             if (why.code) break;
             continue;
         }
@@ -189,27 +192,22 @@ static double (*read_lines(FILE *file, const char *path, long *count, SmError *e
     return NULL;
 }
 
-static SmCode read_text(const char *path, RefPoints *points, SmError *error)
+static SmCode read_text(const char *path, bool bare, long *count, double (**position)[3],
+                        double (**normal)[3], SmError *error)
 {
-    *points = (RefPoints){0};
     FILE *file = sm_file_open(path, NULL, error);
     if (!file) return SM_INPUT;
-    long count;
-    double(*row)[3] = read_lines(file, path, &count, error);
+    double(*row)[3] = read_lines(file, path, bare, count, error);
     fclose(file);
     if (!row) return SM_INPUT;
-    double(*position)[3] = sm_alloc((size_t)count, sizeof *position);
-    double(*normal)[3] = sm_alloc((size_t)count, sizeof *normal);
-    for (long p = 0; p < count; p++) {
-        memcpy(position[p], row[2 * p], sizeof *position);
-        memcpy(normal[p], row[2 * p + 1], sizeof *normal);
+    *position = sm_alloc((size_t)*count, sizeof **position);
+    *normal = sm_alloc((size_t)*count, sizeof **normal);
+    for (long p = 0; p < *count; p++) {
+        memcpy((*position)[p], row[2 * p], sizeof **position);
+        memcpy((*normal)[p], row[2 * p + 1], sizeof **normal);
     }
     free(row);
-    SmCode code = ref_points_create(count, (const double(*)[3])position, (const double(*)[3])normal,
-                                    path, points, error);
-    free(position);
-    free(normal);
-    return code;
+    return SM_OK;
 }
 
 bool ref_points_text(const char *path)
@@ -219,18 +217,38 @@ bool ref_points_text(const char *path)
            (!strcasecmp(dot, ".xyz") || !strcasecmp(dot, ".pts") || !strcasecmp(dot, ".txt"));
 }
 
+static SmCode read_rows(const char *path, bool bare, long *count, double (**position)[3],
+                        double (**normal)[3], SmError *error)
+{
+    return ref_points_text(path) ? read_text(path, bare, count, position, normal, error)
+                                 : sm_import_points(path, NULL, count, position, normal, error);
+}
+
 SmCode ref_points_read(const char *path, RefPoints *points, SmError *error)
 {
     long count;
     double(*position)[3], (*normal)[3];
-    if (ref_points_text(path)) return read_text(path, points, error);
     *points = (RefPoints){0};
-    SmCode code = sm_import_points(path, NULL, &count, &position, &normal, error);
+    SmCode code = read_rows(path, false, &count, &position, &normal, error);
     if (code != SM_OK) return code;
     code = ref_points_create(count, (const double(*)[3])position, (const double(*)[3])normal, path,
                              points, error);
-    free(position);
-    free(normal);
+    sm_free_all(position, normal);
+    return code;
+}
+
+SmCode ref_points_triangles(const char *path, SmMesh *mesh, SmError *error)
+{
+    long count;
+    double(*position)[3], (*normal)[3];
+    *mesh = (SmMesh){0};
+    SmCode code = read_rows(path, true, &count, &position, &normal, error);
+    if (code != SM_OK) return code;
+    code = check(count, (const double(*)[3])position, (const double(*)[3])normal, path, error);
+    if (code == SM_OK)
+        code = ref_local_triangles(count, (const double(*)[3])position, (const double(*)[3])normal,
+                                   path, mesh, error);
+    sm_free_all(position, normal);
     return code;
 }
 

@@ -31,6 +31,11 @@ void ref_points_free(RefPoints *points);
  * numbers; SM_INPUT of a file that cannot be read. */
 SmCode ref_points_read(const char *path, RefPoints *points, SmError *error);
 
+/* The triangles between such a file's points (local_triangles.h), which are the vertices, in their
+ * order. Normals are taken where they are given; lines of text may have three numbers alone. The
+ * caller frees. Errors: those of both. */
+SmCode ref_points_triangles(const char *path, SmMesh *mesh, SmError *error);
+
 /* Whether ref_points_read() takes the file for text. */
 bool ref_points_text(const char *path);
 
