@@ -23,12 +23,13 @@ SmCode bench_burst_create(const BenchScene *scene, int threads, BenchBurst *burs
     burst->seconds = sm_alloc((size_t)steps, sizeof *burst->seconds);
     burst->good = sm_alloc((size_t)steps, sizeof *burst->good);
     burst->cracked = sm_alloc((size_t)steps, sizeof *burst->cracked);
+    burst->cells = sm_alloc((size_t)steps, sizeof *burst->cells);
     return SM_OK;
 }
 
 void bench_burst_free(BenchBurst *burst)
 {
-    sm_free_all(burst->stage, burst->seconds, burst->good, burst->cracked);
+    sm_free_all(burst->stage, burst->seconds, burst->good, burst->cracked, burst->cells);
     *burst = (BenchBurst){.steps = 0};
 }
 
@@ -60,7 +61,10 @@ void bench_burst_round(BenchBurst *burst, BenchPlayback *play)
         sm_lap(&laps, sm_engine_stages(runner->type)->before);
         bench_playback_advance(play, &laps);
         bench_watch_stop(&burst->watch);
-        burst->cracked[s] = body->breaking->cracked.cracks.now != before;
+        const RefCracked *cracked = &body->breaking->cracked;
+        burst->cracked[s] = cracked->cracks.now != before;
+        burst->cells[s][0] = cracked->counts.cells_again;
+        burst->cells[s][1] = cracked->counts.cells;
         keep(burst, s, &laps);
     }
     burst->nodes[1] = body->sheet.warp.nodes;
@@ -85,6 +89,29 @@ int bench_burst_seconds(const BenchBurst *burst, bool cracked, double *seconds)
     return count;
 }
 
+/* Which share of the cells steps with new cracks take again, and how much longer they take for
+ * each.
+ */
+static void count_again(const BenchBurst *burst, BenchElasticRow *elastic)
+{
+    double *share = sm_alloc((size_t)burst->steps, sizeof *share);
+    double sum[2] = {0}, square = 0, product = 0;
+    int count = 0;
+    for (long s = 0; s < burst->steps; s++) {
+        if (!burst->cracked[s]) continue;
+        double cells = (double)burst->cells[s][0], ms = 1e3 * burst->seconds[s];
+        share[count++] = 100 * cells / (double)burst->cells[s][1];
+        sum[0] += cells;
+        sum[1] += ms;
+        square += cells * cells;
+        product += cells * ms;
+    }
+    double spread = count * square - sum[0] * sum[0];
+    elastic->again_percent = count ? bench_quartiles(share, count).median : 0;
+    elastic->cell_ms = spread > 0 ? (count * product - sum[0] * sum[1]) / spread : 0;
+    free(share);
+}
+
 void bench_burst_row(const BenchBurst *burst, BenchRow *row)
 {
     size_t steps = (size_t)burst->steps;
@@ -101,10 +128,11 @@ void bench_burst_row(const BenchBurst *burst, BenchRow *row)
     row->elastic.end_nodes = burst->nodes[1];
     row->elastic.whole_ms = calm ? 1e3 * bench_quartiles(whole, calm).median : NAN;
     free(whole);
+    count_again(burst, &row->elastic);
     bench_row_times(&burst->watch, row);
     row->instruments_percent = NAN; /* there are no times without them */
     memcpy(row->state_hash, burst->state, sizeof row->state_hash);
-    if (row->busy) row->elastic.whole_ms = NAN;
+    if (row->busy) row->elastic.whole_ms = row->elastic.cell_ms = NAN;
     if (calm == burst->steps) bench_row_invalidate(row, "no step has made a crack");
     if (burst->differs) bench_row_invalidate(row, "the same scene has ended in different states");
 }

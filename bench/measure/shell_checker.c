@@ -95,8 +95,9 @@ void bench_shell_row_explain(FILE *file, const BenchRow *row)
     if (e->whole_ms > 0)
         fprintf(file,
                 "    the time is that of steps that make cracks or let some grow; others: %.3g ms; "
-                "%ld nodes at first, %ld in the end\n",
-                e->whole_ms, e->nodes, e->end_nodes);
+                "%ld nodes at first, %ld in the end;\n    of the cells they take %.0f%% again "
+                "(median), and %.2g ms longer for each\n",
+                e->whole_ms, e->nodes, e->end_nodes, e->again_percent, e->cell_ms);
     fprintf(
         file,
         "    parameters in %.3g s, angles off by %.2g degrees (median); matrices of %ld nodes in "

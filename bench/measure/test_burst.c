@@ -47,6 +47,8 @@ TEST(a_row_is_of_the_steps_that_make_cracks)
     if (!row.valid) fail_msg("%s", row.reason);
     assert_in_range(row.repeats, 1, 31);
     assert_true(row.elastic.end_nodes > row.elastic.nodes && row.elastic.nodes >= 55);
+    assert_true(row.elastic.again_percent > 0 && row.elastic.again_percent <= 100);
+    assert_true(row.busy || isfinite(row.elastic.cell_ms));
     assert_int_equal(row.particles, body.mesh.vertex_count);
     assert_int_equal(row.regions, row.elastic.nodes);
     assert_true(isnan(row.instruments_percent) && strlen(row.state_hash) == BENCH_HASH_TEXT - 1);
