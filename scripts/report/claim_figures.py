@@ -202,10 +202,11 @@ def group_figure(group, curves):
 
 
 def is_part(name, curve, curves):
-    """Is a longer curve of the same thing there?"""
-    stem = name.rsplit(".w", 1)[0]
-    return any(other.rsplit(".w", 1)[0] == stem and longer["valid"] and len(longer["x"]) > len(curve["x"])
-               for other, longer in curves.items() if ".w" in name)
+    """Is a longer curve of the same thing there, over more w? A profile at one w is of another thing."""
+    over_w = r"\.w\d+-\d+\.\d+$"
+    stem, parts = re.subn(over_w, "", name)
+    return any(re.subn(over_w, "", other) == (stem, 1) and longer["valid"] and len(longer["x"]) > len(curve["x"])
+               for other, longer in curves.items() if parts)
 
 
 def figures(source):

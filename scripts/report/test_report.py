@@ -227,6 +227,21 @@ class Report(unittest.TestCase):
                            ("fast summation, ns/particle/step", "fast summation, nanoseconds a particle and step")):
             self.assertEqual(claim_figures.words(name), text)
 
+    def test_a_curve_is_no_part_of_its_profiles(self):
+        def curve(x_name, count, valid=1):
+            nothing = float("nan")
+            return {"valid": valid, "x": np.arange(1.0, count + 1), "y": np.arange(2.0, count + 2),
+                    "low": np.full(count, nothing), "high": np.full(count, nothing), "x_name": x_name, "y_name": "cells",
+                    "exponent": nothing, "exponent_low": nothing, "exponent_high": nothing}
+
+        curves = {"smoothing.w1-6.6": curve("w", 5), "smoothing.w3.profile": curve("cells along the bar", 27),
+                  "sums.fast.w1-4.4": curve("w", 4), "sums.fast.w1-6.12": curve("w", 6),
+                  "sums.bars.w1-4.4": curve("w", 4), "sums.bars.w1-6.12": curve("w", 6, valid=0)}
+        self.assertEqual([name for name in curves if claim_figures.is_part(name, curves[name], curves)], ["sums.fast.w1-4.4"])
+        figures = {figure.name: figure for figure in claim_figures.figures(mock.Mock(curves=curves))}
+        self.assertEqual({line[0] for line in figures["smoothing"].data}, {"smoothing.w1-6.6"})
+        self.assertEqual({line[0] for line in figures["smoothing-profile"].data}, {"smoothing.w3.profile"})
+
     def test_logarithmic_axes_have_numbers(self):
         """Two labels at least that stand in the picture, and no powers where plain numbers do."""
         for low, high in ((0.22, 4.5), (3, 11), (1.5, 2.1), (0.02, 900), (4e4, 3e6)):
