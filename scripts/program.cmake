@@ -55,6 +55,7 @@ install(PROGRAMS scripts/build_revision scripts/plot_sweep.py scripts/plot_slice
 install(FILES scripts/plots.py DESTINATION ${scripts_folder})
 install(FILES results/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/results) # has readers of the files
 install(FILES results/page.html DESTINATION ${scripts_folder}) # reports have it, and pictures on their cards
+install(FILES reference/papers.cfg DESTINATION ${scripts_folder}) # and what the papers print
 install(DIRECTORY results/scenes DESTINATION ${scripts_folder} FILES_MATCHING PATTERN *.webp)
 install(DIRECTORY scripts/report DESTINATION ${scripts_folder}
   FILES_MATCHING PATTERN *.py PATTERN *.html PATTERN *.css PATTERN *.js PATTERN test_* EXCLUDE

@@ -17,8 +17,8 @@ for script in check_step.py render.py plots.py plot_calibration.py plot_map.py p
     cmp -s "$here/$script" "$prefix/share/shapebench/$script" ||
         { echo "not installed: $script"; exit 1; }
 done
-for file in page.html scenes/penguin.webp; do
-    cmp -s "$here/../results/$file" "$prefix/share/shapebench/$file" || { echo "not installed: $file"; exit 1; }
+for file in results/page.html results/scenes/penguin.webp reference/papers.cfg; do
+    cmp -s "$here/../$file" "$prefix/share/shapebench/${file#*/}" || { echo "not installed: $file"; exit 1; }
 done
 
 # One header, its functions and no others.

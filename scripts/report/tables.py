@@ -2,6 +2,7 @@
 import math
 import re
 
+import papers
 from drawing import STATUS_MARKS, number
 
 
@@ -36,7 +37,7 @@ class Table:
 
 
 def class_of(column):
-    texts = [text for text in column if not re.fullmatch(r"[-–\d.,()%*?/+e to\n]*", text)]
+    texts = [text for text in column if not re.fullmatch(r"[-–<\d.,()%*?/+e to\n]*", text)]
     longest = max(map(len, texts), default=0)
     return "text long" if longest > 80 else "text" if longest > 24 else "word" if texts else ""
 
@@ -90,8 +91,8 @@ def threads_text(count):
 
 def scenes_of(source):
     """What tells a file's rows from another's, in words."""
-    papers = [PAPERS.get(paper, paper) for paper in dict.fromkeys(row["paper"] for row in source.rows) if paper]
-    text = f"scenes of the {joined(papers)} paper{'s' * (len(papers) > 1)}" if papers else "scenes of no paper"
+    names = [PAPERS.get(paper, paper) for paper in dict.fromkeys(row["paper"] for row in source.rows) if paper]
+    text = f"scenes of the {joined(names)} paper{'s' * (len(names) > 1)}" if names else "scenes of no paper"
     threads = {row["threads"] for row in source.rows}
     return text + (f", {threads_text(*threads)}" if len(threads) == 1 and threads != {1} else "")
 
@@ -147,26 +148,69 @@ def check(row):
     return "VALID" if row["total_ms"] == row["total_ms"] else "BUSY: other programs took the processors"
 
 
-def elastic(source):
-    """Rows of meshless bodies: a frame is the modes' motion and the points that it carries."""
-    rows = [row for row in source.rows if "elastic" in row]
-    if not rows:
-        return None
-    table = Table(f"Time of a frame of meshless bodies: {scenes_of(source)}",
-                  ["scene", "points", "nodes", "modes", "matrices s", "modes s", "motion ms", "skin ms", "frame ms",
-                   "the paper's frame ms", "times as fast as the paper", "check"],
+def is_shell(row):
+    return row["engine"] == "shell"
+
+
+# Columns of meshless bodies and of shells: heading, the row's own value in `elastic`, the paper's, is it a whole number?
+SOLID = [("nodes", "nodes", "nodes", True), ("modes", "modes", "modes", True),
+         ("matrices s", "matrix_seconds", "matrix_s", False), ("modes s", "mode_seconds", "mode_s", False)]
+SHELL = [("parameters s", "map_seconds", "map_s", False), ("nodes", "nodes", "nodes", True),
+         ("in the end", "end_nodes", "last_nodes", True)]
+BOUNDS = ("matrix_s", "mode_s")  # the paper says no more than that all take less
+
+
+def frames(source, rows, title, columns, note):
+    """The paper's beneath each row: of its own values the file has the points and the frame."""
+    table = Table(f"Time of a frame of {title}: {scenes_of(source)}",
+                  ["scene", "points"] + [heading for heading, *_ in columns]
+                  + ["motion ms", "skin ms", "frame ms", "times as fast as the paper", "check"],
                   f"Medians, of {source.name}. The paper's frames are of its own processor and include the drawing of the "
-                  "points.")
+                  "points." + note)
+    printed, shown = papers.rows(), []
     for row in rows:
         body, total, paper = row["elastic"], row["total_ms"], row["paper_total_ms"]
-        counts = [row["scene"], number(row["particles"]), number(body["nodes"]), number(body["modes"])]
+        own = [number(body.get(name) or math.nan) if row["valid"] or whole else "–" for _, name, _, whole in columns]
         if not row["valid"]:
-            table.add(counts + ["–"] * 7 + [check(row)], "invalid")
+            table.add([row["scene"], number(row["particles"])] + own + ["–"] * 4 + [check(row)], "invalid")
             continue
-        beside = [number(paper), number(paper / total)] if paper == paper else ["–", "–"]
-        table.add(counts + [number(body["matrix_seconds"]), number(body["mode_seconds"])]
-                  + measured_times(row, ["motion", "skin"]) + [number(total)] + beside + [check(row)])
+        faster = number(paper / total) if paper == paper and total > 0 else "–"
+        table.add([row["scene"], number(row["particles"])] + own
+                  + measured_times(row, ["motion", "skin"]) + [number(total), faster, check(row)])
+        if paper == paper:
+            given = printed.get((row["paper"], row.get("paper_row", row["scene"])), {})
+            values = [(name, whole, *given.get(name, (math.nan, ""))) for _, _, name, whole in columns]
+            points = row.get("paper_particles", math.nan)
+            table.add(["paper", whole_number(points)]
+                      + [printed_text(name, whole, value, status) for name, whole, value, status in values]
+                      + ["–", "–", number(paper) + STATUS_MARKS.get(row["paper_status"], ""), "", ""], "paper")
+            shown += [row["paper_status"]] + [status for *_, status in values]
+    table.note += explain_marks(shown)
     return table.fold(ALIKE)
+
+
+def whole_number(value):
+    return number(int(value) if value == value else value)
+
+
+def printed_text(name, whole, value, status):
+    text = whole_number(value) if whole or name in BOUNDS else number(value)
+    bound = "< " if name in BOUNDS and value == value else ""
+    return bound + text + STATUS_MARKS.get(status, "")
+
+
+def elastic(source):
+    """Rows of meshless bodies: a frame is the modes' motion and the points that it carries."""
+    rows = [row for row in source.rows if "elastic" in row and not is_shell(row)]
+    return frames(source, rows, "meshless bodies", SOLID, "") if rows else None
+
+
+def shells(source):
+    """Rows of thin shells, whose frame is their nodes' motion and the points."""
+    rows = [row for row in source.rows if "elastic" in row and is_shell(row)]
+    breaks = any(row["elastic"].get("whole_ms", 0) > 0 for row in rows)
+    note = " Frames of a shell that breaks are those that make cracks or let some grow." if breaks else ""
+    return frames(source, rows, "thin shells", SHELL, note) if rows else None
 
 
 def changing(source):
@@ -247,5 +291,5 @@ def environment(sources):
 
 
 def all_tables(sources):
-    made = (make(source) for source in sources for make in (measured, changing, elastic, everything))
+    made = (make(source) for source in sources for make in (measured, changing, elastic, shells, everything))
     return [table for table in made if table]

@@ -9,6 +9,7 @@ import html.parser
 import io
 import os
 import random
+import re
 import shutil
 import subprocess
 import sys
@@ -314,6 +315,29 @@ class Report(unittest.TestCase):
         old = tables.measured(sources.read(self.copy("old.h5", silent)))
         paper = old.lines[1][1]
         self.assertEqual((paper[3], paper[old.headings.index("polar ms")]), ("–", "0.100"))
+
+    def test_meshless_bodies_and_shells_have_the_tables_of_the_program(self):
+        """The columns and rows, ours and the paper's, that `shapebench tables` printed of the same file."""
+        published = os.path.join(SOURCES, "results", "published", "meshless")
+        with open(published + ".txt", encoding="utf-8") as file:
+            printed = re.findall(r"^scene .*?(?=\n\n)", file.read(), re.DOTALL | re.MULTILINE)
+        source = sources.read(published + ".h5")
+        made = [tables.elastic(source), tables.shells(source)]
+        self.assertEqual(len(printed), len(made))
+        for block, table in zip(printed, made):
+            heading, *lines = [re.split(r"  +", line.strip()) for line in block.split("\n")]
+            self.assertEqual([text.replace("motion ms", "motion").replace("skin ms", "skin") for text in table.headings],
+                             heading[:-2] + ["times as fast as the paper"])  # that all are VALID the note says
+            self.assertEqual(len(lines), len(table.lines))
+            stages = range(heading.index("motion"), heading.index("skin") + 1)  # of which the program has percents alone
+            for line, (_, cells) in zip(lines, table.lines):
+                own = [text.replace(",", "").replace("–", "-") for text in cells if text]
+                self.assertEqual([text for i, text in enumerate(own) if i not in stages],
+                                 [text.rstrip("x") for i, text in enumerate(line[:len(own)]) if i not in stages])
+            self.assertEqual(set(table.classes()[1:]), {""})
+        with mock.patch("papers.FOLDERS", (self.at("none"),)):
+            paper = tables.shells(source).lines[1][1]
+        self.assertEqual(paper, ["paper", "40,000", "–", "–", "–", "–", "–", "20.0", ""])
 
     def test_what_all_rows_have_alike_is_said_above_them(self):
         table = tables.measured(sources.read(self.rows))
