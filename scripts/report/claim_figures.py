@@ -35,7 +35,7 @@ GROUPS = {
     "elastic-sag": ("Sag of a meshless beam against theory", "The static sag of a clamped beam by that of Timoshenko's beam.", "x"),
     "regions": ("Summation nodes against epsilon", "Octree section 4.2: epsilon is to bound how many summation nodes a region "
                 "has; by how regions are made symmetric.", ""),
-    "breaking": ("Cost of breaking links", "FastLSM section 5: what a broken link costs, against the size of the body.", "xy"),
+    "breaking": ("Cost of breaking links", "FastLSM section 4: what a broken link costs, against the size of the body.", "xy"),
 }
 
 # Words for the parts of curves' names and the fields that axes are named by; of others "_" becomes a space.
