@@ -1,5 +1,6 @@
 /* A shell that breaks while it is played: its surface, which its engine draws, comes apart in some
- * frame, and the frame says so. No scene sets a strength; here it is set by hand. */
+ * frame, and the frame says so. Of the scenes explosion sets a strength; here it is set by
+ * hand. */
 #include "../../lib/test_frame.h"
 #include "../../reference/meshless/test_solver.h"
 #include "../engines.h"
