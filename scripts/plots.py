@@ -1,5 +1,5 @@
-"""What plot_sweep.py, plot_slice.py, plot_map.py, plot_calibration.py, plot_convergence.py and render.py share: how they are called, read
-and write, and end."""
+"""What plot_sweep.py, plot_slice.py, plot_map.py, plot_calibration.py, plot_convergence.py and render.py share: how
+they are called, read and write, and end."""
 
 import os
 import sys
