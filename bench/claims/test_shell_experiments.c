@@ -125,3 +125,35 @@ TEST(a_burst_is_measured_once_through)
         strstr(curve_of(measure, "strong.cfg", "step-ratio").reason, "0 steps with new cracks"));
     assert_non_null(strstr(curve_of(measure, "penguin", "step-ratio").reason, "that breaks"));
 }
+
+static double field_of(BenchLab *lab, const char *scene, const char *field)
+{
+    BenchMeasure measure = {.experiment = BENCH_TRY_SCENE};
+    assert_true(strlen(path_in(scene)) < sizeof measure.scene);
+    strcpy(measure.scene, path_in(scene));
+    strcpy(measure.field, field);
+    int number = bench_experiment(lab, &measure);
+    if (!lab->curve[number].valid)
+        fail_msg("%s of %s: %s", field, scene, lab->curve[number].reason);
+    assert_int_equal(lab->curve[number].points, 1);
+    return lab->curve[number].y[0];
+}
+
+/* A shell is measured once for all of its counts: one that bursts has as many nodes in the end as
+ * the experiment finds, one that stays whole those that it had at first. */
+TEST(shells_are_counted_at_first_and_in_the_end)
+{
+    needs_solver();
+    BenchLab lab = {.quick = true, .threads = 1, .seed = 1};
+    BenchMeasure measure = {.experiment = BENCH_TRY_BURSTING};
+    write_scene("burst", sphere_mesh(9, 0.3, &seed),
+                "covers = 4.5; strength = 2.0e4; branching = 2.0; pressure = 6.0e3; pulse = 0.1; ");
+    write_scene("ball", sphere_mesh(9, 0.3, &seed), "");
+    double growth = field_of(&lab, "burst.cfg", "end_nodes") / field_of(&lab, "burst.cfg", "nodes");
+    BenchCurve grown = curve_of(measure, "burst.cfg", "growth-percent");
+    if (!grown.valid) fail_msg("%s", grown.reason);
+    assert_true(growth > 1.05 && fabs(100 * (growth - 1) - grown.y[0]) < 1e-9);
+    assert_true(field_of(&lab, "ball.cfg", "end_nodes") == field_of(&lab, "ball.cfg", "nodes"));
+    assert_int_equal(lab.rows, 2);
+    bench_lab_free(&lab);
+}
