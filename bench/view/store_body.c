@@ -44,7 +44,7 @@ int main(int count, char **argument)
                 scene.file, scene.engine);
         return say(&error);
     }
-    if (scene.meshless.basis != REF_MESHLESS_LINEAR) {
+    if (scene.meshless.basis == REF_MESHLESS_QUADRATIC) {
         sm_fail(&error, SM_USAGE, "%s: stored bodies are of the linear basis", scene.file);
         return say(&error);
     }
