@@ -16,6 +16,16 @@ wrong() {
     exit 1
 }
 
+# draws FILE: as SVG beside it, and as PNG
+draws() {
+    local stem=${1%.*}
+    "$plot" "$1" >said
+    grep -qx "wrote $stem.svg" said || wrong "it says $(cat said)"
+    grep -q '</svg>' "$stem.svg" || wrong "no SVG"
+    "$plot" "$1" -o "$stem.png"
+    [ "$(head -c 4 "$stem.png" | tail -c 3)" = PNG ] || wrong "no PNG"
+}
+
 # refused CODE ARGUMENTS...: one line on standard error, and that exit code
 refused() {
     local code=0 wanted=$1

@@ -17,7 +17,7 @@ static SmCode open_map(const BenchExperiment *of, RefSurfaceMap *map, SmError *e
 {
     if (strcmp(of->scene->engine, ref_shell_engine.name) != 0)
         return sm_fail(error, SM_INPUT, "'%.60s' is no shell", of->scene->name);
-    return ref_surface_map_create(&of->body->mesh, of->scene->name, map, error);
+    return ref_surface_map_create(&of->body->mesh, false, of->scene->name, map, error);
 }
 
 /* ---- cells */
@@ -66,7 +66,7 @@ SmCode bench_shell_cells(const BenchExperiment *of, SmError *error)
     if (code) return code;
     for (int c = 0; c < count && !code; c++) {
         RefQuadtree tree;
-        code = ref_quadtree_of(&map.chart, 1, wanted[c], &tree, error);
+        code = ref_quadtree_of(&map.chart, 0, wanted[c], &tree, error);
         if (code) break;
         bench_curve_exact(of->curve, (double)tree.leaves,
                           covers ? least_covers(&tree) : 100 * bench_map_spread(&tree));

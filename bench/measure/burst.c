@@ -1,5 +1,6 @@
 #include "burst.h"
 
+#include <gsl/gsl_fit.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -90,26 +91,25 @@ int bench_burst_seconds(const BenchBurst *burst, bool cracked, double *seconds)
 }
 
 /* Which share of the cells steps with new cracks take again, and how much longer they take for
- * each.
- */
+ * each. */
 static void count_again(const BenchBurst *burst, BenchElasticRow *elastic)
 {
-    double *share = sm_alloc((size_t)burst->steps, sizeof *share);
-    double sum[2] = {0}, square = 0, product = 0;
-    int count = 0;
-    for (long s = 0; s < burst->steps; s++) {
+    size_t steps = (size_t)burst->steps;
+    double *cells = sm_alloc(steps, sizeof *cells), *share = sm_alloc(steps, sizeof *share);
+    double *ms = sm_alloc(steps, sizeof *ms), start, slope, variance[3], squares;
+    int count = bench_burst_seconds(burst, true, ms);
+    for (long s = 0, c = 0; s < burst->steps; s++) {
         if (!burst->cracked[s]) continue;
-        double cells = (double)burst->cells[s][0], ms = 1e3 * burst->seconds[s];
-        share[count++] = 100 * cells / (double)burst->cells[s][1];
-        sum[0] += cells;
-        sum[1] += ms;
-        square += cells * cells;
-        product += cells * ms;
+        cells[c] = (double)burst->cells[s][0];
+        share[c] = 100 * cells[c] / (double)burst->cells[s][1];
+        c++;
     }
-    double spread = count * square - sum[0] * sum[0];
+    for (int c = 0; c < count; c++) ms[c] *= 1e3;
+    gsl_fit_linear(cells, 1, ms, 1, (size_t)count, &start, &slope, variance, variance + 1,
+                   variance + 2, &squares);
     elastic->again_percent = count ? bench_quartiles(share, count).median : 0;
-    elastic->cell_ms = spread > 0 ? (count * product - sum[0] * sum[1]) / spread : 0;
-    free(share);
+    elastic->cell_ms = isfinite(slope) ? slope : 0;
+    sm_free_all(cells, share, ms);
 }
 
 void bench_burst_row(const BenchBurst *burst, BenchRow *row)

@@ -12,6 +12,7 @@
 #include "../../lib/shapes/shape.h"
 #include "../../lib/system/file.h"
 #include "../../lib/voxel/voxelise.h"
+#include "../../reference/meshless/surface/local_triangles.h"
 #include "memory.h"
 #include "nearest.h"
 
@@ -46,7 +47,7 @@ SmCode bench_sheet_load(const char *path, SmMesh *mesh, bool *of_points, SmError
 {
     SmCode code;
     *of_points = has_points(path, mesh, &code, error);
-    return *of_points ? ref_points_triangles(path, mesh, error) : code;
+    return *of_points ? ref_local_triangles_read(path, mesh, error) : code;
 }
 
 static SmBox box_of(const SmMesh *mesh)

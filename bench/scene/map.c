@@ -25,8 +25,8 @@ static SmCode map_surface(const char *source, RefSurfaceMap *map, double *longes
     if (code != SM_OK) return code;
     SmBox box = sm_box_around(mesh.vertex_count, CONST(mesh.position));
     *longest = sm_box_longest(&box);
-    code = of_points ? ref_surface_map_of_triangles(&mesh, "the points", map, &why)
-                     : ref_surface_map_create(&mesh, "the mesh", map, &why);
+    code =
+        ref_surface_map_create(&mesh, of_points, of_points ? "the points" : "the mesh", map, &why);
     sm_mesh_free(&mesh);
     return code == SM_OK ? SM_OK : sm_fail(error, code, "%s: %s", source, why.text);
 }

@@ -71,9 +71,9 @@ static SmCode map_surface(const RefMeshlessOptions *options, SmEngine *engine, S
     const SmMesh *mesh = options->mesh;
     engine->count = mesh->vertex_count;
     engine->rest = sm_copy(mesh->position, (size_t)engine->count, sizeof *engine->rest);
-    return options->of_points
-               ? ref_surface_map_of_triangles(mesh, "the points", &engine->body.map, error)
-               : ref_surface_map_create(mesh, "the mesh", &engine->body.map, error);
+    return ref_surface_map_create(mesh, options->of_points,
+                                  options->of_points ? "the points" : "the mesh", &engine->body.map,
+                                  error);
 }
 
 /* Cells are split where a crack takes more than a quarter of a cover, once. */

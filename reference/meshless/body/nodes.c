@@ -64,11 +64,10 @@ static void note_members(Halving *h, long bin, int count, const int *member)
 
 static bool is_coarse(const RefNodes *nodes, int halved, int count, const int *member)
 {
-    double most = ldexp(nodes->edge, -halved) / 1.01;
-    bool coarse = false;
-    for (int m = 0; count > FULL && halved < nodes->depth && m < count && !coarse; m++)
-        coarse = nodes->reach[member[m]] / 3 < most;
-    return coarse;
+    double third = INFINITY;
+    if (count <= FULL || halved >= nodes->depth) return false;
+    for (int m = 0; m < count; m++) third = fmin(third, nodes->reach[member[m]] / 3);
+    return ldexp(nodes->edge, -halved) > 1.01 * third;
 }
 
 /* Of a bin at `place` in edges of its own, and its members. */
@@ -113,10 +112,8 @@ static long lay_out(RefNodes *nodes)
     }
     for (long n = 0; n < entries; n++) {
         for (int d = 0; d < 3; d++) {
-            double first = nodes->position[n][d] - nodes->reach[n];
-            double last = nodes->position[n][d] + nodes->reach[n];
-            nodes->low[d] = first < nodes->low[d] ? first : nodes->low[d];
-            high[d] = last > high[d] ? last : high[d];
+            nodes->low[d] = fmin(nodes->low[d], nodes->position[n][d] - nodes->reach[n]);
+            high[d] = fmax(high[d], nodes->position[n][d] + nodes->reach[n]);
         }
         least = fmin(least, nodes->reach[n]);
     }

@@ -7,7 +7,6 @@
 
 #include "../../../lib/system/clock.h"
 #include "../surface/cloud.h"
-#include "../surface/local_triangles.h"
 #include "cuts.h"
 #include "harmonic.h"
 #include "images.h"
@@ -752,34 +751,12 @@ static SmCode map_mesh(const SmMesh *mesh, const char *name, double share, long 
     return code;
 }
 
-SmCode ref_surface_map_create(const SmMesh *mesh, const char *name, RefSurfaceMap *map,
-                              SmError *error)
+SmCode ref_surface_map_create(const SmMesh *mesh, bool of_points, const char *name,
+                              RefSurfaceMap *map, SmError *error)
 {
     double from = sm_now();
-    SmCode code = map_mesh(mesh, name, 0.01, 3, map, error);
-    map->seconds = sm_now() - from;
-    return code;
-}
-
-SmCode ref_surface_map_of_triangles(const SmMesh *mesh, const char *name, RefSurfaceMap *map,
-                                    SmError *error)
-{
-    double from = sm_now();
-    SmCode code = map_mesh(mesh, name, 0.05, 12, map, error);
-    map->seconds = sm_now() - from;
-    return code;
-}
-
-SmCode ref_surface_map_of_points(long count, const double (*position)[3], const double (*normal)[3],
-                                 const char *name, RefSurfaceMap *map, SmError *error)
-{
-    double from = sm_now();
-    SmMesh mesh;
-    *map = (RefSurfaceMap){.surface = NULL};
-    SmCode code = ref_local_triangles(count, position, normal, name, &mesh, error);
-    if (code != SM_OK) return code;
-    code = ref_surface_map_of_triangles(&mesh, name, map, error);
-    sm_mesh_free(&mesh);
+    SmCode code = of_points ? map_mesh(mesh, name, 0.05, 12, map, error)
+                            : map_mesh(mesh, name, 0.01, 3, map, error);
     map->seconds = sm_now() - from;
     return code;
 }

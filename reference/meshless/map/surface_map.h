@@ -59,23 +59,16 @@ typedef struct {
  * half and make no handles, holes of a scan, are closed. Where no map of several cylinders is found
  * that turns no triangle over, the shortest of rims and such lines is closed or cut, too, then two
  * more, then four more, up to a half, and the best map is kept. The mesh has passed
- * sm_mesh_prepare(), and is no longer needed afterwards; `name` is for messages. Up to three
- * factorisations of [vertices], for a cap or a sphere one of them and one of [2 * vertices]; as
- * many again where a triangle is turned over at first, or for each of those that are tried. The
- * caller frees. Errors: triangulation.h's and solver.h's; SM_INPUT, one of several cylinders of
- * whose maps each turns a triangle over, and one whose parts stick out so far that over 1% of the
- * triangles collapse in double precision. */
-SmCode ref_surface_map_create(const SmMesh *mesh, const char *name, RefSurfaceMap *map,
-                              SmError *error);
-
-/* The same of triangles between points (surface/local_triangles.h), of which pieces of up to 5% are
- * dropped; rims of up to twelve edges are closed, too, up to half the root of the area. */
-SmCode ref_surface_map_of_triangles(const SmMesh *mesh, const char *name, RefSurfaceMap *map,
-                                    SmError *error);
-
-/* Of points, by such triangles. `normal` may be NULL. Errors also: local_triangles.h's. */
-SmCode ref_surface_map_of_points(long count, const double (*position)[3], const double (*normal)[3],
-                                 const char *name, RefSurfaceMap *map, SmError *error);
+ * sm_mesh_prepare() or is ref_local_triangles()'s, and is no longer needed afterwards; `name` is
+ * for messages. Up to three factorisations of [vertices], for a cap or a sphere one of them and one
+ * of [2 * vertices]; as many again where a triangle is turned over at first, or for each of those
+ * that are tried. The caller frees. Of triangles between points (`of_points`,
+ * surface/local_triangles.h) pieces of up to 5% are dropped, and rims of up to twelve edges are
+ * closed, too, up to half the root of the area. Errors: triangulation.h's and solver.h's; SM_INPUT,
+ * one of several cylinders of whose maps each turns a triangle over, and one whose parts stick out
+ * so far that over 1% of the triangles collapse in double precision. */
+SmCode ref_surface_map_create(const SmMesh *mesh, bool of_points, const char *name,
+                              RefSurfaceMap *map, SmError *error);
 
 /* The parameters of points near the surface: those of the nearest place of the triangles around the
  * four vertices that are nearest to each. What the mesh's vertices have is map->theta. O(log n) for

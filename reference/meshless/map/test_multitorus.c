@@ -11,7 +11,8 @@ static RefSurfaceMap map_of(const SmMesh *mesh, RefMapKind kind, int genus)
 {
     RefSurfaceMap map;
     SmError error = {0};
-    if (ref_surface_map_create(mesh, "mesh", &map, &error) != SM_OK) fail_msg("%s", error.text);
+    if (ref_surface_map_create(mesh, false, "mesh", &map, &error) != SM_OK)
+        fail_msg("%s", error.text);
     assert_int_equal(map.kind, kind);
     assert_int_equal(map.flips, 0);
     assert_int_equal(map.handles, 0);

@@ -1,4 +1,5 @@
 /* Maps of points: uneven, unoriented, noisy, doubled, and such that have none. */
+#include "../surface/local_triangles.h"
 #include "../test_solver.h"
 #include "surface_map.h"
 #include "test_surfaces.h"
@@ -67,10 +68,13 @@ static RefSurfaceMap map_of(const Points *points, bool oriented, RefMapKind kind
 {
     RefSurfaceMap map;
     SmError error = {0};
-    if (ref_surface_map_of_points(points->count, (const double(*)[3])points->x,
-                                  oriented ? (const double(*)[3])points->normal : NULL, "points",
-                                  &map, &error) != SM_OK)
+    SmMesh mesh = {0};
+    SmCode code = ref_local_triangles(points->count, (const double(*)[3])points->x,
+                                      oriented ? (const double(*)[3])points->normal : NULL,
+                                      "points", &mesh, &error);
+    if (code || ref_surface_map_create(&mesh, true, "points", &map, &error) != SM_OK)
         fail_msg("%s", error.text);
+    sm_mesh_free(&mesh);
     assert_int_equal(map.kind, kind);
     assert_int_equal(map.flips, 0);
     assert_int_equal(map.vertices, points->count);
@@ -179,11 +183,24 @@ TEST(feet_are_the_nearest_places)
     points_free(&points);
 }
 
-static void refused(long count, const double (*x)[3], const char *why)
+/* By the triangles between points, or by the map of these; says why. */
+static SmError refusal(long count, const double (*x)[3], const double (*normal)[3])
 {
     RefSurfaceMap map;
+    SmMesh mesh;
     SmError error = {0};
-    assert_int_equal(ref_surface_map_of_points(count, x, NULL, "points", &map, &error), SM_INPUT);
+    SmCode code = ref_local_triangles(count, x, normal, "points", &mesh, &error);
+    if (code == SM_OK) {
+        code = ref_surface_map_create(&mesh, true, "points", &map, &error);
+        sm_mesh_free(&mesh);
+    }
+    assert_int_equal(code, SM_INPUT);
+    return error;
+}
+
+static void refused(long count, const double (*x)[3], const char *why)
+{
+    SmError error = refusal(count, x, NULL);
     if (!strstr(error.text, why)) fail_msg("%s", error.text);
 }
 
@@ -203,11 +220,7 @@ TEST(points_without_a_surface_are_refused)
     refused(points.count, (const double(*)[3])points.x, "lie in no surface");
     for (long p = 0; p < points.count; p++) /* anywhere in a cube */
         for (int d = 0; d < 3; d++) points.x[p][d] = random_between(&seed, 0, 1);
-    RefSurfaceMap map;
-    SmError error = {0};
-    assert_int_equal(ref_surface_map_of_points(points.count, (const double(*)[3])points.x, NULL,
-                                               "points", &map, &error),
-                     SM_INPUT);
+    refusal(points.count, (const double(*)[3])points.x, NULL);
     points_free(&points);
     points = round_sheet(20, true, 0.2); /* two layers, near to each other, that look apart */
     for (long p = 0; p < points.count; p += 2)
@@ -215,10 +228,8 @@ TEST(points_without_a_surface_are_refused)
             points.x[p][d] *= 0.99;
             points.normal[p][d] *= -1;
         }
-    assert_int_equal(ref_surface_map_of_points(points.count, (const double(*)[3])points.x,
-                                               (const double(*)[3])points.normal, "points", &map,
-                                               &error),
-                     SM_INPUT);
+    SmError error =
+        refusal(points.count, (const double(*)[3])points.x, (const double(*)[3])points.normal);
     assert_non_null(strstr(error.text, "2 surfaces"));
     points_free(&points);
     points = random_sphere(1000); /* two of them */

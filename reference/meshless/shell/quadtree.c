@@ -260,46 +260,6 @@ SmCode ref_quadtree_build(const RefChart *chart, int across, double threshold, R
                    REF_MOST_CELLS);
 }
 
-/* The number of terminal cells by threshold: infinite where there are too many. */
-static double leaves_of(const RefChart *chart, int across, double threshold)
-{
-    RefQuadtree tree;
-    if (ref_quadtree_build(chart, across, threshold, &tree, NULL) != SM_OK) return INFINITY;
-    double leaves = (double)tree.leaves;
-    ref_quadtree_free(&tree);
-    return leaves;
-}
-
-/* They fall as the threshold grows, by leaps. A bracket is found from above, where trees are small.
- */
-SmCode ref_quadtree_of(const RefChart *chart, int across, long wanted, RefQuadtree *tree,
-                       SmError *error)
-{
-    *tree = (RefQuadtree){0};
-    SmCode code = check(chart, across, error);
-    if (code != SM_OK) return code;
-    double high = 0, best = INFINITY, found = 0;
-    plant(chart, across, tree);
-    for (long n = 0; n < tree->count; n++) high = fmax(high, edge_on_surface(tree, tree->cell + n));
-    ref_quadtree_free(tree);
-    double low = high, least = high / (1 << REF_QUADTREE_LEVELS);
-    while (low > least && !(leaves_of(chart, across, low) > (double)wanted)) {
-        high = low;
-        low /= 2;
-    }
-    for (int n = 0; n < 16; n++) {
-        double threshold = n == 0 ? high : sqrt(low * high);
-        double leaves = leaves_of(chart, across, threshold);
-        double off = fabs(log(leaves / (double)wanted));
-        if (off < best) {
-            best = off;
-            found = threshold;
-        }
-        *(leaves > (double)wanted ? &low : &high) = threshold;
-    }
-    return ref_quadtree_build(chart, across, found, tree, error);
-}
-
 /* Its own, and those on rims: in the middle of its sides there, and in the rectangle's corners. */
 void ref_quadtree_add_nodes(const RefQuadtree *tree, const RefCell *cell, double eta,
                             RefNodes *nodes)
@@ -333,38 +293,63 @@ static long count_nodes(const RefQuadtree *tree)
     return count;
 }
 
-/* The tree with so many nodes from such roots, of a second one that knows how many are on rims;
- * kept if it is nearer than by `off`. */
-static SmCode try_roots(const RefChart *chart, int across, long wanted, RefQuadtree *tree,
-                        double *off, SmError *error)
+/* How many by threshold: infinite where there are too many cells. */
+static double nodes_of(const RefChart *chart, int across, double threshold)
 {
-    double cells = (double)wanted;
-    for (int trial = 0; trial < 2 && *off > NEAR; trial++) {
-        RefQuadtree other;
-        SmCode code = ref_quadtree_of(chart, across, (long)fmax(rint(cells), 1), &other, error);
-        if (code != SM_OK) return code;
-        double share = (double)count_nodes(&other) / (double)wanted;
-        bool nearer = fabs(log(share)) < *off;
-        cells = (double)other.leaves / share;
-        ref_quadtree_free(nearer ? tree : &other);
-        if (!nearer) continue;
-        *tree = other;
-        *off = fabs(log(share));
-    }
-    return SM_OK;
+    RefQuadtree tree;
+    if (ref_quadtree_build(chart, across, threshold, &tree, NULL) != SM_OK) return INFINITY;
+    double nodes = (double)count_nodes(&tree);
+    ref_quadtree_free(&tree);
+    return nodes;
 }
 
-SmCode ref_quadtree_with(const RefChart *chart, long wanted, RefQuadtree *tree, SmError *error)
+/* The threshold that makes of such roots as nearly so many nodes as bisection finds, which fall as
+ * it grows, by leaps; and by which factor they miss, as its logarithm. A bracket is found from
+ * above, where trees are small. */
+static double find_threshold(const RefChart *chart, int across, long wanted, double *off)
 {
-    int first = ref_quadtree_across(chart, wanted);
-    double cells, off = INFINITY, squarest = shape_of_roots(chart, first, &cells);
+    RefQuadtree tree;
+    double high = 0, found = 0;
+    plant(chart, across, &tree);
+    for (long n = 0; n < tree.count; n++) high = fmax(high, edge_on_surface(&tree, tree.cell + n));
+    ref_quadtree_free(&tree);
+    double low = high, least = high / (1 << REF_QUADTREE_LEVELS);
+    while (low > least && !(nodes_of(chart, across, low) > (double)wanted)) {
+        high = low;
+        low /= 2;
+    }
+    *off = INFINITY;
+    for (int n = 0; n < 16; n++) {
+        double threshold = n == 0 ? high : sqrt(low * high);
+        double nodes = nodes_of(chart, across, threshold), far = fabs(log(nodes / (double)wanted));
+        if (far < *off) {
+            *off = far;
+            found = threshold;
+        }
+        *(nodes > (double)wanted ? &low : &high) = threshold;
+    }
+    return found;
+}
+
+SmCode ref_quadtree_of(const RefChart *chart, int across, long wanted, RefQuadtree *tree,
+                       SmError *error)
+{
     *tree = (RefQuadtree){0};
-    SmCode code = try_roots(chart, first, wanted, tree, &off, error);
-    for (int across = first + 1; across <= MOST_ACROSS && code == SM_OK && off > NEAR; across++)
-        if (shape_of_roots(chart, across, &cells) < LONGER * squarest && cells <= (double)wanted)
-            code = try_roots(chart, across, wanted, tree, &off, error);
-    if (code != SM_OK) ref_quadtree_free(tree);
-    return code;
+    SmCode code = check(chart, across ? across : 1, error);
+    if (code != SM_OK) return code;
+    int first = across ? across : ref_quadtree_across(chart, wanted), best = first;
+    double cells, squarest = shape_of_roots(chart, first, &cells), least;
+    double threshold = find_threshold(chart, first, wanted, &least);
+    for (int other = first + 1; !across && other <= MOST_ACROSS && least > NEAR; other++) {
+        double off, longer = shape_of_roots(chart, other, &cells) / squarest;
+        if (longer > LONGER || cells > (double)wanted) continue;
+        double found = find_threshold(chart, other, wanted, &off);
+        if (!(off < least)) continue;
+        threshold = found;
+        least = off;
+        best = other;
+    }
+    return ref_quadtree_build(chart, best, threshold, tree, error);
 }
 
 void ref_quadtree_nodes(const RefQuadtree *tree, double eta, RefNodes *nodes)

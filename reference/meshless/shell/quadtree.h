@@ -48,14 +48,12 @@ SmCode ref_quadtree_build(const RefChart *chart, int across, double threshold, R
  * third longer. */
 int ref_quadtree_across(const RefChart *chart, long wanted);
 
-/* ref_quadtree_build() with a threshold that gives as close to `wanted` terminal cells as bisection
- * finds. */
+/* ref_quadtree_build() with a threshold that makes as nearly the wanted number of nodes
+ * (ref_quadtree_nodes()) as bisection finds. `across` may be 0: as ref_quadtree_across() says, or
+ * where that misses by over 5%, as on sheets all of whose cells are split at once, more that make
+ * cells nearly as square. */
 SmCode ref_quadtree_of(const RefChart *chart, int across, long wanted, RefQuadtree *tree,
                        SmError *error);
-/* A tree that ref_quadtree_nodes() gives as nearly the wanted number of nodes, those on rims
- * counted: of roots as ref_quadtree_across() says, or where they miss it by over 5%, as on sheets
- * all of whose cells are split at once, of more that make cells nearly as square. */
-SmCode ref_quadtree_with(const RefChart *chart, long wanted, RefQuadtree *tree, SmError *error);
 void ref_quadtree_free(RefQuadtree *tree);
 
 /* The terminal cell at a place of the rectangle. O(levels). */

@@ -27,11 +27,9 @@ SmCode ref_shell_build(const RefChart *chart, const RefShellOptions *options, Re
     RefSamples samples = {0};
     *shell = (RefShell){.chart = *chart, .basis = options->basis};
     SmCode code =
-        !options->nodes
-            ? ref_quadtree_build(&shell->chart, options->across, INFINITY, &shell->tree, error)
-        : !options->across
-            ? ref_quadtree_with(&shell->chart, options->nodes, &shell->tree, error)
-            : ref_quadtree_of(&shell->chart, options->across, options->nodes, &shell->tree, error);
+        options->nodes
+            ? ref_quadtree_of(&shell->chart, options->across, options->nodes, &shell->tree, error)
+            : ref_quadtree_build(&shell->chart, options->across, INFINITY, &shell->tree, error);
     if (code != SM_OK) return code;
     ref_quadtree_nodes(&shell->tree, eta_of(options), &shell->nodes);
     code = ref_samples_take(&shell->tree, &shell->nodes, options->basis, &samples, error);

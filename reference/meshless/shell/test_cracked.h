@@ -31,7 +31,7 @@ static inline void map_sheet(SmMesh mesh, Sheet *sheet)
 {
     SmError error = {0};
     sm_mesh_merge(&mesh);
-    if (ref_surface_map_create(&mesh, "mesh", &sheet->map, &error) != SM_OK)
+    if (ref_surface_map_create(&mesh, false, "mesh", &sheet->map, &error) != SM_OK)
         fail_msg("%s", error.text);
     sm_mesh_free(&mesh);
     sheet->chart = sheet->map.chart;

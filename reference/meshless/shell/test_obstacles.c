@@ -88,8 +88,8 @@ static Found hemisphere(int nodes)
     return found;
 }
 
-/* Within 3% of what is printed with the most nodes, and closer than with the fewest.
- * scripts/plot_convergence.py reads these lines. */
+/* Within 3% of what is printed with the most nodes, and closer than with fewer. Of these lines
+ * scripts/plot_convergence.py makes a figure. */
 static void runs(Found (*course)(int), const char *what, const int size[4], double printed)
 {
     needs_solver();
@@ -99,7 +99,7 @@ static void runs(Found (*course)(int), const char *what, const int size[4], doub
         share[k] = found.moved / printed;
         print_message("%s, deflection: %ld nodes, %.4f of theory's\n", what, found.nodes, share[k]);
     }
-    assert_true(fabs(share[3] - 1) < 0.03 && fabs(share[3] - 1) < fabs(share[0] - 1));
+    assert_true(fabs(share[3] - 1) < 0.03 && fabs(share[3] - 1) < fabs(share[2] - 1));
 }
 
 TEST(scordelis_lo_roof)
@@ -114,5 +114,5 @@ TEST(pinched_cylinder)
 
 TEST(pinched_hemisphere)
 {
-    runs(hemisphere, "pinched hemisphere", (int[]){200, 400, 800, 1600}, 0.0924);
+    runs(hemisphere, "pinched hemisphere", (int[]){272, 504, 920, 1810}, 0.0924);
 }

@@ -96,7 +96,7 @@ TEST(supported_on_uneven_cells)
         RefChart chart = random_chart(&seed, 0.35, false, false, &waves);
         RefShellOptions options =
             thin(4, trial % 2 ? REF_MLS_PLANE_LINEAR : REF_MLS_PLANE_QUADRATIC);
-        options.nodes = 500;
+        options.nodes = 590;
         for (int d = 0; d < 2; d++) {
             chart.low[d] = waves.low[d] = 0;
             chart.high[d] = waves.side[d] = 1;

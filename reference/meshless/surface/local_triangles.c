@@ -421,3 +421,16 @@ SmCode ref_local_triangles(long count, const double (*position)[3], const double
     sm_mesh_free(mesh);
     return sm_fail(error, SM_INPUT, "%s: the %ld points lie in no surface", name, count);
 }
+
+SmCode ref_local_triangles_read(const char *path, SmMesh *mesh, SmError *error)
+{
+    long count;
+    double(*position)[3], (*normal)[3];
+    *mesh = (SmMesh){0};
+    SmCode code = ref_points_rows(path, true, &count, &position, &normal, error);
+    if (code != SM_OK) return code;
+    code = ref_local_triangles(count, (const double(*)[3])position, (const double(*)[3])normal,
+                               path, mesh, error);
+    sm_free_all(position, normal);
+    return code;
+}

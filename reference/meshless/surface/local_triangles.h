@@ -17,4 +17,7 @@
 SmCode ref_local_triangles(long count, const double (*position)[3], const double (*normal)[3],
                            const char *name, SmMesh *mesh, SmError *error);
 
+/* The same of a file that ref_points_rows() reads, bare ones too. */
+SmCode ref_local_triangles_read(const char *path, SmMesh *mesh, SmError *error);
+
 #endif

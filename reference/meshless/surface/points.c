@@ -10,7 +10,6 @@
 #include "../../../lib/mesh/import.h"
 #include "../../../lib/system/file.h"
 #include "../../../lib/vector.h"
-#include "local_triangles.h"
 
 enum { LINE = 1 << 20 };
 
@@ -217,11 +216,17 @@ bool ref_points_text(const char *path)
            (!strcasecmp(dot, ".xyz") || !strcasecmp(dot, ".pts") || !strcasecmp(dot, ".txt"));
 }
 
-static SmCode read_rows(const char *path, bool bare, long *count, double (**position)[3],
-                        double (**normal)[3], SmError *error)
+SmCode ref_points_rows(const char *path, bool bare, long *count, double (**position)[3],
+                       double (**normal)[3], SmError *error)
 {
-    return ref_points_text(path) ? read_text(path, bare, count, position, normal, error)
-                                 : sm_import_points(path, NULL, count, position, normal, error);
+    SmCode code = ref_points_text(path)
+                      ? read_text(path, bare, count, position, normal, error)
+                      : sm_import_points(path, NULL, count, position, normal, error);
+    if (code != SM_OK) return code;
+    code =
+        check(*count, (const double(*)[3]) * position, (const double(*)[3]) * normal, path, error);
+    if (code != SM_OK) sm_free_all(*position, *normal);
+    return code;
 }
 
 SmCode ref_points_read(const char *path, RefPoints *points, SmError *error)
@@ -229,25 +234,10 @@ SmCode ref_points_read(const char *path, RefPoints *points, SmError *error)
     long count;
     double(*position)[3], (*normal)[3];
     *points = (RefPoints){0};
-    SmCode code = read_rows(path, false, &count, &position, &normal, error);
+    SmCode code = ref_points_rows(path, false, &count, &position, &normal, error);
     if (code != SM_OK) return code;
     code = ref_points_create(count, (const double(*)[3])position, (const double(*)[3])normal, path,
                              points, error);
-    sm_free_all(position, normal);
-    return code;
-}
-
-SmCode ref_points_triangles(const char *path, SmMesh *mesh, SmError *error)
-{
-    long count;
-    double(*position)[3], (*normal)[3];
-    *mesh = (SmMesh){0};
-    SmCode code = read_rows(path, true, &count, &position, &normal, error);
-    if (code != SM_OK) return code;
-    code = check(count, (const double(*)[3])position, (const double(*)[3])normal, path, error);
-    if (code == SM_OK)
-        code = ref_local_triangles(count, (const double(*)[3])position, (const double(*)[3])normal,
-                                   path, mesh, error);
     sm_free_all(position, normal);
     return code;
 }

@@ -31,10 +31,11 @@ void ref_points_free(RefPoints *points);
  * numbers; SM_INPUT of a file that cannot be read. */
 SmCode ref_points_read(const char *path, RefPoints *points, SmError *error);
 
-/* The triangles between such a file's points (local_triangles.h), which are the vertices, in their
- * order. Normals are taken where they are given; lines of text may have three numbers alone. The
- * caller frees. Errors: those of both. */
-SmCode ref_points_triangles(const char *path, SmMesh *mesh, SmError *error);
+/* All rows of such a file, a position and a normal each, for the caller to free. With `bare` lines
+ * of text may have three numbers alone: their normals are zero. Errors: reading's, and
+ * ref_points_create()'s of numbers and normals. */
+SmCode ref_points_rows(const char *path, bool bare, long *count, double (**position)[3],
+                       double (**normal)[3], SmError *error);
 
 /* Whether ref_points_read() takes the file for text. */
 bool ref_points_text(const char *path);
