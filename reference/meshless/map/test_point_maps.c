@@ -72,7 +72,8 @@ static RefSurfaceMap map_of(const Points *points, bool oriented, RefMapKind kind
     SmCode code = ref_local_triangles(points->count, (const double(*)[3])points->x,
                                       oriented ? (const double(*)[3])points->normal : NULL,
                                       "points", &mesh, &error);
-    if (code || ref_surface_map_create(&mesh, true, "points", &map, &error) != SM_OK)
+    if (code != SM_OK) fail_msg("%s", error.text);
+    if (ref_surface_map_create(&mesh, true, "points", &map, &error) != SM_OK)
         fail_msg("%s", error.text);
     sm_mesh_free(&mesh);
     assert_int_equal(map.kind, kind);
