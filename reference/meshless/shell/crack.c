@@ -404,12 +404,6 @@ static void box_of_ways(const RefGrid *grid, const double from[2], double low[2]
     }
 }
 
-static void place_of(const RefGrid *grid, int p, double x[2])
-{
-    x[0] = grid->at[0][p % grid->count[0]];
-    x[1] = grid->at[1][p / grid->count[0]];
-}
-
 /* Whether the places of a grid and that from which they are seen are not all on one side of a
  * piece. */
 static bool may_cross(const RefCrackPiece *piece, const RefGrid *grid, const double from[2])
@@ -439,8 +433,8 @@ static bool all_lead(const RefCracks *cracks, const RefCrackPiece *piece, const 
     way_from(piece->at.end[0], piece->at.end[1], along);
     for (int p = 0; p < grid->count[0] * grid->count[1]; p++) {
         if (!crossing[p]) continue;
-        double x[2], way[2], b[2];
-        place_of(grid, p, x);
+        const double x[2] = {grid->at[0][p % grid->count[0]], grid->at[1][p / grid->count[0]]};
+        double way[2], b[2];
         way_from(from, x, way);
         way_from(piece->at.end[0], x, b);
         crossing[p] = leads(cracks, piece, x, from, cross(along, b) / cross(along, way));
@@ -483,18 +477,6 @@ static bool cross_grid(const RefCracks *cracks, const RefCrackPiece *piece, cons
     return any && (!cracks->chart->cylinders || all_lead(cracks, piece, grid, from, crossing));
 }
 
-/* What is left of a part that a piece takes from. */
-static void take_from(const RefCrackPiece *piece, double ahead, const double x[2],
-                      const double from[2], double width, double part[6])
-{
-    double f[6];
-    if (part[0] == 0) return;
-    if (ahead < width && pass_piece(piece, ahead, x, from, width, f))
-        ref_mls_multiply(f, part);
-    else
-        memset(part, 0, 6 * sizeof *part);
-}
-
 /* The ways from a place to those of a grid. */
 typedef struct {
     const RefCracks *cracks;
@@ -532,24 +514,42 @@ static bool in_the_way(Fan *fan, const RefCrackPiece *piece)
            cross_grid(fan->cracks, piece, fan->grid, fan->from, fan->crossing);
 }
 
+/* What is left of the parts at places of a grid that a piece takes from; false: nothing. */
+static bool take_from(const Fan *fan, const RefCrackPiece *piece, double ahead, double width,
+                      double (*part)[6])
+{
+    const RefGrid *grid = fan->grid;
+    const unsigned char *crossing = fan->crossing;
+    bool left = false;
+    for (int j = 0; j < grid->count[1]; j++)
+        for (int i = 0; i < grid->count[0]; i++, part++, crossing++) {
+            const double x[2] = {grid->at[0][i], grid->at[1][j]};
+            double f[6];
+            if (*crossing && part[0][0] != 0) {
+                if (ahead < width && pass_piece(piece, ahead, x, fan->from, width, f))
+                    ref_mls_multiply(f, *part);
+                else
+                    memset(*part, 0, sizeof *part);
+            }
+            left |= part[0][0] != 0;
+        }
+    return left;
+}
+
 bool ref_cracks_fan(const RefCracks *cracks, bool earlier, const RefGrid *grid,
                     const double from[2], double reach, double (*part)[6])
 {
     Fan fan = fan_of(cracks, grid, from);
     int places = grid->count[0] * grid->count[1];
-    bool any = false;
+    bool any = false, left = true;
     const RefCracksNear *near = near_to(cracks, fan.low, fan.high);
     const RefCrackPiece *piece;
-    for (long n = 0; (piece = next_piece(&fan, near, &n));) {
+    for (long n = 0; left && (piece = next_piece(&fan, near, &n));) {
         double ahead = earlier ? piece->before : piece->ahead;
         if ((earlier && piece->born == cracks->now) || !in_the_way(&fan, piece)) continue;
         for (int p = 0; !any && p < places; p++) memcpy(part[p], whole, sizeof whole);
         any = true;
-        for (int p = 0; p < places; p++) {
-            double x[2];
-            place_of(grid, p, x);
-            if (fan.crossing[p]) take_from(piece, ahead, x, from, TIP_REACH * reach, part[p]);
-        }
+        left = take_from(&fan, piece, ahead, TIP_REACH * reach, part);
     }
     return any;
 }

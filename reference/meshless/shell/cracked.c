@@ -109,7 +109,7 @@ static void take_samples(const RefCracked *cracked, long c, RefSamplesWork *take
     }
 }
 
-_Static_assert((int)REF_SAMPLES_PER_CELL <= 64, "a bit each");
+_Static_assert((int)REF_SAMPLES_PER_CELL < 64, "a bit each");
 static uint64_t find_bearing(const RefSamples *samples)
 {
     uint64_t bears = 0;
@@ -162,18 +162,21 @@ static void count_all(RefCracked *cracked)
 /* The nearest that no crack parts from a place, of all or of those that bear it; -1: none is. */
 static int nearest_unparted(const RefCracked *cracked, long c, bool all, const double theta[2])
 {
-    double least = INFINITY;
-    int best = -1;
+    const RefCrackedCell *cell = cracked->cell + c;
+    double far[REF_SAMPLES_PER_CELL];
+    uint64_t left = all ? (1ULL << REF_SAMPLES_PER_CELL) - 1 : cell->bears;
     for (int n = 0; n < REF_SAMPLES_PER_CELL; n++) {
-        const double *at = cracked->cell[c].samples.theta[n];
-        double x = at[0] - theta[0], y = at[1] - theta[1], far = x * x + y * y;
-        if (far >= least || !(all || ref_cracked_bears(cracked, c, n)) ||
-            ref_cracks_part(&cracked->cracks, theta, at))
-            continue;
-        least = far;
-        best = n;
+        double x = cell->samples.theta[n][0] - theta[0], y = cell->samples.theta[n][1] - theta[1];
+        far[n] = x * x + y * y;
     }
-    return best;
+    while (left) { /* the nearest that is left: few are parted, and to find that takes longest */
+        int best = __builtin_ctzll(left);
+        for (uint64_t more = left & (left - 1); more; more &= more - 1)
+            if (far[__builtin_ctzll(more)] < far[best]) best = __builtin_ctzll(more);
+        if (!ref_cracks_part(&cracked->cracks, theta, cell->samples.theta[best])) return best;
+        left &= ~(1ULL << best);
+    }
+    return -1;
 }
 
 int ref_cracked_sample(const RefCracked *cracked, long c, const double theta[2])

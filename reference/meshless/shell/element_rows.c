@@ -1,5 +1,6 @@
 #include "element_rows.h"
 
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -44,67 +45,79 @@ static void fetch(const RefElement *of, long a)
     for (; from < to; from += 64) __builtin_prefetch(from);
 }
 
-/* The node's partners, rising; `number` is -1 of all before and their place afterwards. Nodes that
- * no sample of a cell sees together are none. */
-static void find_partners(long n, const Uses *uses, const RefElement *const *element, int *number,
-                          RefElementRow *row)
+/* A row as it is added up, of all nodes: which are its partners, a bit each, and their sums. All
+ * are zero between rows. */
+typedef struct {
+    uint64_t *is;
+    double (*sum)[10];
+} Gathered;
+
+/* Nodes that no sample of a cell sees together have no mass there, and are no partners by it. */
+static void add_element(const RefElement *of, long a, Gathered *gathered)
 {
-    int most = 1;
-    for (long u = uses->start[n]; u < uses->start[n + 1]; u++)
-        most += element[uses->element[u]]->count;
-    if (most > row->room) {
-        row->partner = sm_realloc(row->partner, (size_t)most, sizeof *row->partner);
-        row->sum = sm_realloc(row->sum, (size_t)most, sizeof *row->sum);
-        row->room = most;
+    for (long b = a; b < of->count; b++) {
+        const int other = of->node[b];
+        const double *from = ref_element_sum(of, a, b);
+        double *restrict to = gathered->sum[other];
+        if (from[0] == 0) continue;
+        gathered->is[other / 64] |= 1ULL << other % 64;
+        for (int k = 0; k < 10; k++) to[k] += from[k];
     }
-    row->partner[0] = (int)n;
-    row->count = 1;
-    number[n] = 0;
-    for (long u = uses->start[n]; u < uses->start[n + 1]; u++) {
-        const RefElement *of = element[uses->element[u]];
-        long a = uses->place[u];
-        if (u + 1 < uses->start[n + 1]) fetch(element[uses->element[u + 1]], uses->place[u + 1]);
-        for (long b = a; b < of->count; b++) {
-            if (number[of->node[b]] >= 0 || ref_element_sum(of, a, b)[0] == 0) continue;
-            number[of->node[b]] = 0;
-            row->partner[row->count++] = of->node[b];
-        }
-    }
-    sm_sort_ints(row->partner, row->count);
-    for (int b = 0; b < row->count; b++) number[row->partner[b]] = b;
 }
 
-static void sum_row(long n, const Uses *uses, const RefElement *const *element, int *number,
+static void make_room(int count, RefElementRow *row)
+{
+    row->count = count;
+    if (count <= row->room) return;
+    row->room = count + count / 4;
+    sm_free_all(row->partner, row->sum);
+    row->partner = sm_alloc((size_t)row->room, sizeof *row->partner);
+    row->sum = sm_alloc((size_t)row->room, sizeof *row->sum);
+}
+
+/* Takes the row's partners, rising, from words first .. last. */
+static void take_row(long first, long last, Gathered *gathered, RefElementRow *row)
+{
+    int count = 0, b = 0;
+    for (long w = first; w <= last; w++) count += __builtin_popcountll(gathered->is[w]);
+    make_room(count, row);
+    for (long w = first; w <= last; w++) {
+        for (uint64_t left = gathered->is[w]; left; left &= left - 1, b++) {
+            double *sum = gathered->sum[row->partner[b] = (int)(64 * w) + __builtin_ctzll(left)];
+            memcpy(row->sum[b], sum, sizeof *row->sum);
+            memset(sum, 0, sizeof *row->sum);
+        }
+        gathered->is[w] = 0;
+    }
+}
+
+static void sum_row(long n, const Uses *uses, const RefElement *const *element, Gathered *gathered,
                     RefElementRow *row)
 {
-    find_partners(n, uses, element, number, row);
-    memset(row->sum, 0, (size_t)row->count * sizeof *row->sum);
+    long last = n;
+    gathered->is[n / 64] |= 1ULL << n % 64;
     for (long u = uses->start[n]; u < uses->start[n + 1]; u++) {
         const RefElement *of = element[uses->element[u]];
-        long a = uses->place[u];
-        for (long b = a; b < of->count; b++) {
-            int place = number[of->node[b]];
-            const double *sum = ref_element_sum(of, a, b);
-            if (place < 0) continue;
-            for (int k = 0; k < 10; k++) row->sum[place][k] += sum[k];
-        }
+        if (u + 1 < uses->start[n + 1]) fetch(element[uses->element[u + 1]], uses->place[u + 1]);
+        add_element(of, uses->place[u], gathered);
+        if (of->node[of->count - 1] > last) last = of->node[of->count - 1];
     }
-    for (int b = 0; b < row->count; b++) number[row->partner[b]] = -1;
+    take_row(n / 64, last / 64, gathered, row);
 }
 
 void ref_element_rows_sum(RefElementRows *rows, long nodes, const unsigned char *touched,
                           long count, const RefElement *const *element)
 {
     Uses uses = find_uses(nodes, count, element);
-    int *number = sm_alloc((size_t)nodes, sizeof *number);
-    for (long n = 0; n < nodes; n++) number[n] = -1;
+    Gathered gathered = {sm_alloc((size_t)nodes / 64 + 1, sizeof *gathered.is),
+                         sm_alloc((size_t)nodes, sizeof *gathered.sum)};
     if (nodes > rows->count) {
         rows->row = sm_widen(rows->row, rows->count, nodes, sizeof *rows->row, 0);
         rows->count = nodes;
     }
     for (long n = 0; n < nodes; n++)
-        if (touched[n]) sum_row(n, &uses, element, number, rows->row + n);
-    sm_free_all(uses.start, uses.element, uses.place, number);
+        if (touched[n]) sum_row(n, &uses, element, &gathered, rows->row + n);
+    sm_free_all(uses.start, uses.element, uses.place, gathered.is, gathered.sum);
 }
 
 void ref_element_rows_matrices(const RefElementRows *rows, double density, RefMatrices *matrices)

@@ -63,10 +63,13 @@ RefFaceStress *ref_fracture_stresses(const RefCracked *cracked, const double (*u
 {
     RefFaceStress *stress = sm_alloc(4 * (size_t)cracked->shell->tree.leaves, sizeof *stress);
     *count = 0;
-    for (long c = 0; c < cracked->shell->tree.count; c++)
+    for (long c = 0; c < cracked->shell->tree.count; c++) {
+        if (c + 1 < cracked->shell->tree.count)
+            ref_samples_fetch_quarters(&cracked->cell[c + 1].samples);
         for (int q = 0; cracked->cell[c].made && q < 4; q++)
             stress[(*count)++] =
                 stress_at(cracked, &cracked->cell[c].samples, ref_samples_quarter(q), u);
+    }
     return stress;
 }
 

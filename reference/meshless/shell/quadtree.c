@@ -130,13 +130,14 @@ static bool relieve(RefQuadtree *tree, RefCell fine, int side)
     return changed;
 }
 
-/* One-level adjustment; splitting may call for more splitting. */
-static void balance(RefQuadtree *tree)
+/* One-level adjustment about cells from number `from` on, those that are new; splitting may call
+ * for more splitting. */
+static void balance(RefQuadtree *tree, long from)
 {
     bool changed = true;
     while (changed) {
         changed = false;
-        for (long at = 0; at < tree->count; at++)
+        for (long at = from; at < tree->count; at++)
             for (int side = 0; side < 4 && tree->cell[at].child < 0; side++)
                 changed |= relieve(tree, tree->cell[at], side);
     }
@@ -145,8 +146,9 @@ static void balance(RefQuadtree *tree)
 bool ref_quadtree_split(RefQuadtree *tree, long cell)
 {
     if (tree->cell[cell].size == 1 || tree->count + 4 > REF_MOST_CELLS) return false;
+    long from = tree->count;
     split(tree, cell);
-    balance(tree);
+    balance(tree, from);
     return true;
 }
 
@@ -252,7 +254,7 @@ SmCode ref_quadtree_build(const RefChart *chart, int across, double threshold, R
     if (code != SM_OK) return code;
     plant(chart, across, tree);
     if (refine(tree, threshold)) {
-        balance(tree);
+        balance(tree, 0);
         return SM_OK;
     }
     ref_quadtree_free(tree);

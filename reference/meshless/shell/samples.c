@@ -122,6 +122,17 @@ int ref_samples_nearest(const double middle[2], const double edge[2], const doub
     return which[1] * ALONG + which[0];
 }
 
+void ref_samples_fetch_quarters(const RefSamples *samples)
+{
+    for (int q = 0; q < 4 && samples->count; q++) {
+        const long *start = samples->start + ref_samples_quarter(q);
+        const char *part = (const char *)(samples->part + start[0]);
+        const char *end = (const char *)(samples->part + start[1]);
+        for (__builtin_prefetch(samples->node + start[0]); part < end; part += 64)
+            __builtin_prefetch(part);
+    }
+}
+
 void ref_samples_part(const RefShape *shape, int n, double part[6])
 {
     part[0] = shape->value[n];
@@ -268,9 +279,10 @@ static int gather(const double at[2][ALONG], double scale, RefSamplesWork *work)
     for (long n = 0; n < nodes->count + nodes->images; n++) {
         const double *node = nodes->position[n], reach = nodes->reach[n];
         if (nodes->cylinders && nodes->home[n] != home) continue;
-        if (!(node[0] - low[0] > -reach && node[0] - high[0] < reach && node[1] - low[1] > -reach &&
-              node[1] - high[1] < reach))
-            continue;
+        const bool near[] = {node[0] - low[0] > -reach,
+                             node[0] - high[0]<reach, node[1] - low[1]> - reach,
+                             node[1] - high[1] < reach};
+        if (!(near[0] & near[1] & near[2] & near[3])) continue; /* one branch, seldom taken */
         if (count == work->room) { /* zeroed: lanes that are no samples stay so */
             long more = sm_room_for(count);
             work->node = sm_widen(work->node, count, more, sizeof *work->node, 0);
@@ -351,10 +363,10 @@ static void take_basis(RefBasis basis, bool last, double edge, int count, RefSam
         for (int p = 0; p < REF_SAMPLES_PER_CELL; p++) {
             const RefCellNode *of = work->node + n;
             if (!take[p] || !(of->weight[0][p] > 0)) continue;
-            samples->node[at[p]] = work->member[n];
-            double *part = samples->part[at[p]++];
-            for (int k = 0; k < REF_CELL_PARTS; k++) part[k] = of->part[k][p];
-            if (!serve[p]) memset(part + 1, 0, (REF_CELL_PARTS - 1) * sizeof *part);
+            double part[REF_CELL_PARTS] = {of->part[0][p]};
+            for (int k = 1; serve[p] && k < REF_CELL_PARTS; k++) part[k] = of->part[k][p];
+            memcpy(samples->part[at[p]], part, sizeof part);
+            samples->node[at[p]++] = work->member[n];
         }
 }
 

@@ -64,6 +64,10 @@ SmCode ref_samples_take(const RefQuadtree *tree, RefNodes *nodes, RefBasis basis
                         RefSamples *samples, SmError *error);
 void ref_samples_free(RefSamples *samples);
 
+/* Asks memory for the functions of a cell's quarters, for what works on the cell before meanwhile:
+ * a shell's are more than a cache has. */
+void ref_samples_fetch_quarters(const RefSamples *samples);
+
 /* The same of one terminal cell, with covers as they are, which cracks cut. Where they leave a
  * sample too few nodes, or functions that vary faster than a cell of this edge can bear, it has
  * those of a lower basis, and where they leave it no node, none. The caller frees. */

@@ -136,7 +136,10 @@ static void make_cells(const RefShell *shell, RefWarp *warp)
     warp->tug = sm_alloc(PLACES * cells, sizeof *warp->tug);
     for (long n = 0; n < warp->nodes; n++) number[n] = -1;
     for (long c = 0; c < shell->tree.count; c++) {
+        const RefShellFunctions *kept = &shell->functions;
         double middle[2], edge[2];
+        if (kept->cell && c + 1 < shell->tree.count)
+            ref_samples_fetch_quarters(kept->cell(kept->kept, c + 1));
         if (shell->tree.cell[c].child >= 0) continue;
         ref_quadtree_cell(&shell->tree, shell->tree.cell + c, middle, edge);
         Functions at[PLACES];

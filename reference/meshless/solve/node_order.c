@@ -73,10 +73,12 @@ cholmod_sparse *ref_node_ordered(const RefMatrices *matrices, double shift, cons
             for (int a = 0; a < 3; a++)
                 from[a] = K->value + K->start[3 * i + a] + 3 * (e - M->start[i]) - a;
             for (int c = 0; c < 3; c++) { /* three columns, or the diagonal's lower half */
-                int *at = end + (p < q ? p : q) + c;
-                for (int r = p == q ? c : 0; r < 3; r++, ++*at) {
-                    row[*at] = (p < q ? q : p) + r;
-                    value[*at] = (p <= q ? from[c][r] : from[r][c]) - (r == c ? less : 0);
+                const int column = (p < q ? p : q) + c, skip = p == q ? c : 0;
+                const int begin = end[column] - skip; /* where its row 0 would be */
+                end[column] += 3 - skip;
+                for (int r = skip; r < 3; r++) {
+                    row[begin + r] = (p < q ? q : p) + r;
+                    value[begin + r] = (p <= q ? from[c][r] : from[r][c]) - (r == c ? less : 0);
                 }
             }
         }
