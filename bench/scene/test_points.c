@@ -127,6 +127,9 @@ TEST(clouds_are_shells)
         }
         fclose(given);
     }
+    write_ply_ball("cloud.ply", &(Ball){600, 1, 0, 0.3, true, false});
+    run("run cloud.ply --engine shell --nodes 150 --frames 2 --no-output", &result);
+    if (result.code || !strstr(result.out, "of a disk")) fail_msg("%s%s", result.out, result.err);
     run("run cloud.xyz --engine shell --nodes 150 --strength 1e-3 --frames 4 --no-output", &result);
     if (result.code) fail_msg("%d, %s", result.code, result.err);
     run("info cloud.xyz --map", &result);
@@ -197,7 +200,7 @@ TEST(bad_clouds_are_one_clear_line)
     write_text("empty.xyz", "");
     static const Mistake mistakes[] = {
         {"run bare.xyz --engine meshless", 3, "bare.xyz: line 1 has three numbers"},
-        {"run bare.ply --engine meshless", 3, "bare.ply: "},
+        {"run bare.ply --engine meshless", 3, "bare.ply: the points have no normals"},
         {"run few.xyz --engine meshless", 3, "few.xyz: "},
         {"run same.xyz --engine meshless", 3, "same.xyz: "},
         {"run half.xyz --engine meshless", 3, "half.xyz: "},

@@ -20,9 +20,9 @@ typedef struct {
  * frees `mesh` with sm_mesh_free(). Errors: SM_INPUT. */
 SmCode sm_import(const char *path, const SmImportLimits *limits, SmMesh *mesh, SmError *error);
 
-/* Reads the points of a file that has points with normals and no faces (PLY, mostly); parts with
- * triangles are passed over. The caller frees both arrays. Errors: SM_INPUT, which includes points
- * without normals and no points. */
+/* Reads the points of a file that has points and no faces (PLY, mostly), and their normals, which
+ * are zero where it has none; parts with triangles are passed over. The caller frees both arrays.
+ * Errors: SM_INPUT, which includes no points. */
 SmCode sm_import_points(const char *path, const SmImportLimits *limits, long *count,
                         double (**position)[3], double (**normal)[3], SmError *error);
 

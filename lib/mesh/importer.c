@@ -33,7 +33,6 @@ typedef struct {
     double (*position)[3], (*normal)[3]; /* NULL while all is counted */
     int (*triangle)[3];
     double offset[3];
-    bool bare; /* some points have no normals */
 } Import;
 
 typedef struct {
@@ -81,7 +80,6 @@ static bool count_mesh(const struct aiMesh *mesh, Import *import)
     header->triangle_count += triangles;
     header->vertex_count += triangles ? mesh->mNumVertices : 0;
     header->points += triangles ? 0 : mesh->mNumVertices;
-    import->bare |= !triangles && mesh->mNumVertices && !mesh->mNormals;
     if (import->of_points) return (double)header->points <= import->most;
     return (double)header->triangle_count <= import->most &&
            (double)(header->vertex_count + header->points) <= 3 * import->most;
@@ -136,9 +134,9 @@ static void copy_vertices(Import *import, const struct aiMesh *mesh, const Trans
             import->position[vertex][a] = r[0] * (double)p->x + r[1] * (double)p->y +
                                           r[2] * (double)p->z + r[3] + import->offset[a];
             if (!import->of_points) continue;
-            const struct aiVector3D *n = &mesh->mNormals[v];
+            struct aiVector3D n = mesh->mNormals ? mesh->mNormals[v] : (struct aiVector3D){0, 0, 0};
             import->normal[vertex][a] =
-                r[0] * (double)n->x + r[1] * (double)n->y + r[2] * (double)n->z;
+                r[0] * (double)n.x + r[1] * (double)n.y + r[2] * (double)n.z;
         }
     }
 }
@@ -191,7 +189,6 @@ static const char *refusal(const Import *import)
 {
     const SmReplyHeader *header = &import->header;
     if (import->of_points) {
-        if (import->bare) return "its points have no normals";
         if (!header->points) return "it holds no points";
         return header->points > INT_MAX ? "more than 2147483647 points" : NULL;
     }

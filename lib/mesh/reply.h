@@ -9,7 +9,9 @@
 #include <stdint.h>
 
 /* What to do with points without triangles, for messages. */
-#define SM_REPLY_POINTS "'run --engine meshless' takes points with normals (PLY, .xyz, .pts, .txt)"
+#define SM_REPLY_POINTS                                                                            \
+    "'run --engine meshless' takes points with normals (PLY, .xyz, .pts, .txt), 'run --engine "    \
+    "shell' also without"
 
 enum { SM_REPLY_MAGIC = 0x6d657368, SM_REPLY_TEXT = 400 };
 

@@ -156,7 +156,8 @@ static bool take_line(const char *text, const char *path, long line, bool first,
     if (found == 6 || (bare && found == 3)) return true;
     if (found != 1 || !first)
         sm_fail(error, SM_INPUT,
-                found == 3
+                bare ? "%s: line %ld is not x y z, nor x y z nx ny nz"
+                : found == 3
                     ? "%s: line %ld has three numbers: the points have no normals; give them "
                       "as x y z nx ny nz"
                     : "%s: line %ld is not x y z nx ny nz",
@@ -216,6 +217,13 @@ bool ref_points_text(const char *path)
            (!strcasecmp(dot, ".xyz") || !strcasecmp(dot, ".pts") || !strcasecmp(dot, ".txt"));
 }
 
+static bool all_bare(long count, const double (*normal)[3])
+{
+    for (long p = 0; p < count; p++)
+        if (sm_dot(normal[p], normal[p]) > 0) return false;
+    return true;
+}
+
 SmCode ref_points_rows(const char *path, bool bare, long *count, double (**position)[3],
                        double (**normal)[3], SmError *error)
 {
@@ -225,6 +233,9 @@ SmCode ref_points_rows(const char *path, bool bare, long *count, double (**posit
     if (code != SM_OK) return code;
     code =
         check(*count, (const double(*)[3]) * position, (const double(*)[3]) * normal, path, error);
+    if (code == SM_OK && !bare && all_bare(*count, (const double(*)[3]) * normal))
+        code = sm_fail(error, SM_INPUT,
+                       "%s: the points have no normals; give each one's nx, ny and nz", path);
     if (code != SM_OK) sm_free_all(*position, *normal);
     return code;
 }

@@ -209,7 +209,7 @@ TEST(text_files)
                  {"1 2 nan 0 0 1\n", "no number"},
                  {"1 2 1e999 0 0 1\n", "no number"},
                  {"1 2 3 0 0 1\n1 2 4 0 0 1\n", "too few"},
-                 {"1 2 3 0 0 0\n", "too few"}};
+                 {"1 2 3 0 0 0\n", "no normals"}};
     for (size_t n = 0; n < sizeof wrong / sizeof *wrong; n++) {
         assert_int_equal(read_points(wrong[n].text, &points, &error), SM_INPUT);
         assert_non_null(strstr(error.text, wrong[n].says));
