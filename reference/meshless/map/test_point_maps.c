@@ -64,15 +64,22 @@ static Points round_sheet(int n, bool around, double noise)
     return points;
 }
 
-static RefSurfaceMap map_of(const Points *points, bool oriented, RefMapKind kind)
+static SmMesh mesh_of(const Points *points, bool oriented)
 {
-    RefSurfaceMap map;
     SmError error = {0};
     SmMesh mesh = {0};
     SmCode code = ref_local_triangles(points->count, (const double(*)[3])points->x,
                                       oriented ? (const double(*)[3])points->normal : NULL,
                                       "points", &mesh, &error);
     if (code != SM_OK) fail_msg("%s", error.text);
+    return mesh;
+}
+
+static RefSurfaceMap map_of(const Points *points, bool oriented, RefMapKind kind)
+{
+    RefSurfaceMap map;
+    SmError error = {0};
+    SmMesh mesh = mesh_of(points, oriented);
     if (ref_surface_map_create(&mesh, true, "points", &map, &error) != SM_OK)
         fail_msg("%s", error.text);
     sm_mesh_free(&mesh);
@@ -146,6 +153,32 @@ TEST(sheets_and_tubes_of_points_keep_their_rims)
         assert_true(map.angle_median < 1.5 && map.angle_95 < 5);
         assert_int_equal(away(&points, &map, 1e-6), 0);
         ref_surface_map_free(&map);
+        points_free(&points);
+    }
+}
+
+/* Normals that look to either side, of one point in five or at random, are as none; of fewer they
+ * are kept. */
+TEST(normals_at_odds_are_not_taken)
+{
+    needs_solver();
+    for (int trial = 0; trial < 6; trial++) {
+        static const double share[] = {0.5, 0.2, 0.02};
+        bool ball = trial % 2;
+        Points points = ball ? random_sphere(1500) : round_sheet(30, false, 0.3);
+        for (long p = 0; p < points.count; p++)
+            for (int d = 0, turn = random_between(&seed, 0, 1) < share[trial / 2]; d < 3; d++)
+                points.normal[p][d] *= turn ? -1 : 1;
+        RefSurfaceMap map = map_of(&points, true, ball ? REF_MAP_SPHERE : REF_MAP_DISK);
+        assert_true(away(&points, &map, 0.05) <= points.count / 20);
+        ref_surface_map_free(&map);
+        SmMesh bare = mesh_of(&points, false), mesh = mesh_of(&points, true);
+        bool same = mesh.triangle_count == bare.triangle_count &&
+                    memcmp(mesh.triangle, bare.triangle,
+                           (size_t)mesh.triangle_count * sizeof *mesh.triangle) == 0;
+        assert_int_equal(same, trial < 4);
+        sm_mesh_free(&bare);
+        sm_mesh_free(&mesh);
         points_free(&points);
     }
 }

@@ -239,14 +239,40 @@ static void choose_sides(const Work *work, bool *settled)
     free(along);
 }
 
+/* Whether given normals do not say which side is which: one pair of neighbours in ten and more look
+ * apart, and not as two sheets do, whose points lie behind each other. How far behind is taken by
+ * both normals, so that what the surface bends by cancels. */
+static bool are_at_odds(const Work *work)
+{
+    double behind = 0, off = 0;
+    long pairs = 0, apart = 0;
+    for (long p = 0; p < work->count; p++)
+        for (int n = 0; n < FIT && work->near[p][n] >= 0; n++) {
+            int q = work->near[p][n];
+            const double *a = work->normal[p], *b = work->normal[q];
+            double way[3];
+            pairs += q != p;
+            if (!(sm_dot(a, b) < 0)) continue;
+            apart++;
+            sm_subtract(work->position[q], work->position[p], way);
+            double ahead = sm_dot(way, a) - sm_dot(way, b);
+            behind -= ahead;
+            off += fabs(ahead);
+        }
+    return 10 * apart > pairs && behind <= off / 2;
+}
+
 /* Normals and planes. */
 static void find_planes(Work *work, const double (*normal)[3])
 {
     bool *settled = sm_alloc((size_t)work->count, sizeof *settled);
     for (long p = 0; p < work->count; p++) {
-        int fit = 0;
         if (normal) memcpy(work->normal[p], normal[p], sizeof *normal);
         settled[p] = sm_normalize(work->normal[p]);
+    }
+    if (are_at_odds(work)) memset(settled, 0, (size_t)work->count * sizeof *settled);
+    for (long p = 0; p < work->count; p++) {
+        int fit = 0;
         if (settled[p]) continue;
         while (fit < FIT && work->near[p][fit] >= 0) fit++;
         fit_plane(work->position, fit, work->near[p], work->normal[p]);

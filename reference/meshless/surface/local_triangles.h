@@ -6,7 +6,9 @@
 
 /* Triangles of points near each other. Normals that are not given (`normal` is NULL, or one has no
  * length) are those of the planes that fit the points' neighbours, and look as their neighbours'
- * do (Hoppe et al. 1992), out of the point that is farthest along x. Every point has the Delaunay
+ * do (Hoppe et al. 1992), out of the point that is farthest along x. So are all where given ones
+ * contradict each other: of one pair of neighbours in ten they look apart, and not as those of two
+ * sheets, which lie behind each other. Every point has the Delaunay
  * triangles that it has among its nearest ones in its tangent plane (Gopi, Krishnan and Silva
  * 2000). Of these come first those on which three points agree, then two, then one, each unless it
  * would lie over what is there or make the surface one-sided. What is left open are rims, beyond
