@@ -448,6 +448,27 @@ TEST(a_handle_is_cut_after_a_hole_was_closed)
     sm_mesh_free(&mesh);
 }
 
+/* With so many edges across it, and maybe a fin on one of these. */
+static SmMesh moebius_strip(int around, int fins)
+{
+    SmMesh mesh = sm_mesh_new(2 * around + fins, 2 * around + fins);
+    for (int n = 0; n < 2 * around; n++) {
+        double angle = 2 * M_PI * (n / 2) / around, side = (n % 2 ? 1 : -1) * 0.4;
+        mesh.position[n][0] = cos(angle) * (2 + side * cos(angle / 2));
+        mesh.position[n][1] = sin(angle) * (2 + side * cos(angle / 2));
+        mesh.position[n][2] = side * sin(angle / 2);
+        for (int k = 0; k < 3; k++) {
+            int to = n + k;
+            mesh.triangle[n][n % 2 ? 2 - k : k] = to < 2 * around ? to : (to - 2 * around) ^ 1;
+        }
+    }
+    for (int n = 2 * around; n < 2 * around + fins; n++) {
+        mesh.position[n][2] = 1;
+        memcpy(mesh.triangle[n], (int[3]){2, 3, n}, sizeof *mesh.triangle);
+    }
+    return mesh;
+}
+
 TEST(surfaces_without_a_map_are_refused)
 {
     needs_solver();
@@ -456,22 +477,42 @@ TEST(surfaces_without_a_map_are_refused)
     SmMesh mesh = both(&sphere, &ring);
     refused(&mesh, "2 surfaces that do not hang together");
     sm_mesh_free(&mesh);
-    enum { AROUND = 20 };
-    mesh = sm_mesh_new(2 * AROUND, 2 * AROUND); /* a Moebius strip */
-    for (int n = 0; n < 2 * AROUND; n++) {
-        double angle = 2 * M_PI * (n / 2) / AROUND, side = (n % 2 ? 1 : -1) * 0.4;
-        mesh.position[n][0] = cos(angle) * (2 + side * cos(angle / 2));
-        mesh.position[n][1] = sin(angle) * (2 + side * cos(angle / 2));
-        mesh.position[n][2] = side * sin(angle / 2);
-        for (int k = 0; k < 3; k++) {
-            int to = n + k;
-            mesh.triangle[n][k] = to < 2 * AROUND ? to : (to - 2 * AROUND) ^ 1;
-        }
-    }
+    mesh = moebius_strip(20, 0);
     refused(&mesh, "one side only");
     sm_mesh_free(&mesh);
     sm_mesh_free(&sphere);
     sm_mesh_free(&ring);
+}
+
+/* Three sheets at an edge, and two at a vertex: where that is. One that is no manifold may have one
+ * slip in a thousand triangles. */
+TEST(what_is_no_manifold_says_where)
+{
+    needs_solver();
+    SmMesh mesh = sm_mesh_new(5, 3);
+    static const double corner[5][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 0.5}};
+    static const int at_edge[3][3] = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}};
+    static const int at_vertex[2][3] = {{0, 1, 2}, {0, 3, 4}};
+    memcpy(mesh.position, corner, sizeof corner);
+    memcpy(mesh.triangle, at_edge, sizeof at_edge);
+    refused(&mesh, "more than two triangles meet in 1 edge from (0, 0, 0) to (1, 0, 0); parted "
+                   "there: 2 surfaces");
+    memcpy(mesh.triangle, at_vertex, sizeof at_vertex);
+    mesh.triangle_count = 2;
+    refused(&mesh, "(two touch in a vertex, at (0, 0, 0))");
+    sm_mesh_free(&mesh);
+    mesh = moebius_strip(80, 1);
+    refused(&mesh, "parted there: the surface has one side only");
+    sm_mesh_free(&mesh);
+    mesh = moebius_strip(600, 0);
+    refused(&mesh, "one side only");
+    sm_mesh_free(&mesh);
+    mesh = moebius_strip(600, 1);
+    RefTriangulation surface;
+    assert_int_equal(ref_triangulation_create(&mesh, "strip", 0.01, &surface, NULL), SM_OK);
+    assert_true(surface.triangles == 1200 && surface.rims == 1 && surface.genus == 0);
+    ref_triangulation_free(&surface);
+    sm_mesh_free(&mesh);
 }
 
 /* Real ones, of every kind and with faults. */

@@ -1,6 +1,7 @@
 #include "triangulation.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -93,21 +94,30 @@ static void pair_around(const SmMesh *mesh, const SmEdge *edge, long count,
     free(around);
 }
 
+/* Edges in which more than two triangles meet: how many, and the vertices of one. */
+typedef struct {
+    long count;
+    int vertex[2];
+} Crowded;
+
 /* Glues corners whose edges are the same. */
-static void glue(const SmMesh *mesh, RefTriangulation *surface)
+static Crowded glue(const SmMesh *mesh, RefTriangulation *surface)
 {
+    Crowded crowded = {0};
     const int(*triangle)[3] = (const int(*)[3])surface->vertex;
     long corners = 3 * surface->triangles;
     SmEdge *edge = sorted_edges(mesh->vertex_count, surface->triangles, triangle);
     for (long c = 0; c < corners; c++) surface->twin[c] = -1;
     for (long e = 0, end; e < corners; e = end) {
         for (end = e + 1; end < corners && sm_edges_same(edge + e, edge + end);) end++;
-        if (end - e == 2)
-            join(surface, edge[e].corner, edge[e + 1].corner);
-        else if (end - e > 2)
-            pair_around(mesh, edge + e, end - e, surface);
+        if (end - e == 2) join(surface, edge[e].corner, edge[e + 1].corner);
+        if (end - e < 3) continue;
+        pair_around(mesh, edge + e, end - e, surface);
+        if (crowded.count == 0) crowded = (Crowded){0, {edge[e].low, edge[e].high}};
+        crowded.count++;
     }
     free(edge);
+    return crowded;
 }
 
 /* Turns a triangle round: its corners in the order 0 2 1. */
@@ -127,10 +137,11 @@ static void turn_round(RefTriangulation *surface, long t)
 }
 
 /* Walks over the triangles from one, turning round what disagrees, and says in `piece` that they
- * are of this one; returns how many there are, or -1 where that cannot be done. */
-static long orient(RefTriangulation *surface, int from, int number, int *piece, int *queue)
+ * are of this one; returns how many there are. What has one side only is parted where it comes
+ * together turned over: `parted` counts those edges. */
+static long orient(RefTriangulation *surface, int from, int number, int *piece, int *queue,
+                   long *parted)
 {
-    bool sound = true;
     long end = 1;
     queue[0] = from;
     piece[from] = number;
@@ -140,14 +151,16 @@ static long orient(RefTriangulation *surface, int from, int number, int *piece, 
             if (twin < 0) continue;
             bool disagree = surface->vertex[twin] == surface->vertex[c];
             if (piece[twin / 3] >= 0) {
-                sound = sound && !disagree;
+                if (!disagree) continue;
+                surface->twin[c] = surface->twin[twin] = -1;
+                (*parted)++;
                 continue;
             }
             if (disagree) turn_round(surface, twin / 3);
             piece[twin / 3] = number;
             queue[end++] = twin / 3;
         }
-    return sound ? end : -1;
+    return end;
 }
 
 /* Keeps the triangles of one piece. */
@@ -166,38 +179,101 @@ static void keep_piece(RefTriangulation *surface, const int *piece, int number)
     free(to);
 }
 
-/* Orients the largest piece and keeps it, where the others have no more than `share`. */
-static SmCode take_piece(RefTriangulation *surface, const char *name, double share, SmError *error)
+typedef struct {
+    int *of; /* [triangles] */
+    int count, best;
+    long largest; /* how many triangles the best one has */
+    long parted;  /* edges */
+} Pieces;
+
+/* Orients all pieces. */
+static Pieces find_pieces(RefTriangulation *surface)
 {
     size_t count = (size_t)surface->triangles;
-    int *piece = sm_alloc(count, sizeof *piece), *queue = sm_alloc(count, sizeof *queue);
-    int pieces = 0, best = 0;
-    long largest = 0;
-    bool sound = true;
-    for (size_t t = 0; t < count; t++) piece[t] = -1;
+    int *queue = sm_alloc(count, sizeof *queue);
+    Pieces pieces = {.of = sm_alloc(count, sizeof *pieces.of)};
+    for (size_t t = 0; t < count; t++) pieces.of[t] = -1;
     for (size_t t = 0; t < count; t++) {
-        if (piece[t] >= 0) continue;
-        long held = orient(surface, (int)t, pieces, piece, queue);
-        sound = sound && held > 0;
-        if (held > largest) {
-            largest = held;
-            best = pieces;
+        if (pieces.of[t] >= 0) continue;
+        long held = orient(surface, (int)t, pieces.count, pieces.of, queue, &pieces.parted);
+        if (held > pieces.largest) {
+            pieces.largest = held;
+            pieces.best = pieces.count;
         }
-        pieces++;
+        pieces.count++;
     }
-    keep_piece(surface, piece, best);
-    sm_free_all(piece, queue);
-    if (!sound)
+    free(queue);
+    return pieces;
+}
+
+static void write_place(const double x[3], char text[64])
+{
+    snprintf(text, 64, "(%.6g, %.6g, %.6g)", x[0], x[1], x[2]);
+}
+
+/* What a refusal of a surface that was parted begins with. */
+static void write_crowded(const SmMesh *mesh, const Crowded *crowded, char text[256])
+{
+    char end[2][64];
+    for (int k = 0; k < 2; k++) write_place(mesh->position[crowded->vertex[k]], end[k]);
+    text[0] = 0;
+    if (crowded->count > 0)
+        snprintf(text, 256,
+                 "non-manifold: more than two triangles meet in %ld edge%s from %s to %s; parted "
+                 "there: ",
+                 crowded->count, crowded->count == 1 ? "" : "s, one", end[0], end[1]);
+}
+
+/* Where two pieces touch, if they do. */
+static void write_touch(const SmMesh *mesh, const RefTriangulation *surface, const int *piece,
+                        char text[128])
+{
+    int *owner = sm_alloc((size_t)mesh->vertex_count, sizeof *owner);
+    text[0] = 0;
+    for (int c = 0; c < 3 * surface->triangles && !text[0]; c++) {
+        int v = surface->vertex[c], held = owner[v];
+        char place[64];
+        owner[v] = piece[c / 3] + 1;
+        if (held == 0 || held == owner[v]) continue;
+        write_place(mesh->position[v], place);
+        snprintf(text, 128, " (two touch in a vertex, at %s)", place);
+    }
+    free(owner);
+}
+
+/* Refuses what has one side only, or other pieces than the largest. */
+static SmCode refuse(const SmMesh *mesh, const Crowded *crowded, const RefTriangulation *surface,
+                     const Pieces *pieces, bool one_sided, const char *name, SmError *error)
+{
+    char before[256], touch[128];
+    write_crowded(mesh, crowded, before);
+    if (one_sided)
         return sm_fail(error, SM_INPUT,
-                       "%s: the surface has one side only, as a Moebius strip has: a shell needs "
-                       "two",
-                       name);
-    if ((double)largest >= (1 - share) * (double)count) return SM_OK;
-    return sm_fail(
-        error, SM_INPUT,
-        "%s: %d surfaces that do not hang together by edges, the largest with %ld of %zu "
-        "triangles: give the shell one",
-        name, pieces, largest, count);
+                       "%s: %sthe surface has one side only, as a Moebius strip has: a shell "
+                       "needs two",
+                       name, before);
+    write_touch(mesh, surface, pieces->of, touch);
+    return sm_fail(error, SM_INPUT,
+                   "%s: %s%d surfaces that do not hang together by edges%s, the largest with %ld "
+                   "of %ld triangles: give the shell one",
+                   name, before, pieces->count, crowded->count ? "" : touch, pieces->largest,
+                   surface->triangles);
+}
+
+/* Keeps the largest piece, oriented, where the others have no more than `share`. A few edges may be
+ * parted to give it two sides, but only of what is no manifold. */
+static SmCode take_piece(const SmMesh *mesh, const Crowded *crowded, const char *name, double share,
+                         RefTriangulation *surface, SmError *error)
+{
+    long count = surface->triangles;
+    Pieces pieces = find_pieces(surface);
+    bool one_sided = pieces.parted > (crowded->count ? count / 1000 : 0);
+    SmCode code = SM_OK;
+    if (one_sided || (double)pieces.largest < (1 - share) * (double)count)
+        code = refuse(mesh, crowded, surface, &pieces, one_sided, name, error);
+    keep_piece(surface, pieces.of, pieces.best);
+    free(pieces.of);
+    return code;
 }
 
 /* Gives every fan of corners a vertex of its own; `source` are the numbers that corners had. What
@@ -281,8 +357,8 @@ SmCode ref_triangulation_create(const SmMesh *mesh, const char *name, double sha
                                   .twin = sm_alloc(corners, sizeof(int)),
                                   .length = sm_alloc(corners, sizeof(double))};
     take_triangles(mesh, surface);
-    glue(mesh, surface);
-    SmCode code = take_piece(surface, name, share, error);
+    Crowded crowded = glue(mesh, surface);
+    SmCode code = take_piece(mesh, &crowded, name, share, surface, error);
     if (code != SM_OK) {
         ref_triangulation_free(surface);
         return code;
