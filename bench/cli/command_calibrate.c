@@ -26,7 +26,7 @@ static const BenchSetting settings[] = {
                    "A beam: its body's box, its cells and its time step are taken (default: beam)"),
      BENCH_IN(Options, plan.file), .offers = bench_scene_names},
     {BENCH_MEASURE("engine", "NAME", 1, "%s (default: both)"), BENCH_IN(Options, plan.engines),
-     .choices_of = bench_engine_choices},
+     .choices_of = bench_engine_choices, .take = bench_take_engines},
     {LIST("w", 0, 1,
           "Region half-widths in cells, which in a regular octree are its nodes' edges, 1 to "
           "31, FIRST:LAST[:STEP] or a list (default: 1:10)")},
@@ -68,7 +68,10 @@ static const char help[] =
     "Timoshenko's. The grid is of all w and epsilon on the scene's beam; other spacings are "
     "measured for all w, other lengths and time steps for the first, middle and last, at the first "
     "epsilon. Every specimen is checked against brute force, and that it is at rest; one that "
-    "fails is INVALID. The laws are fitted to all of them. The octree samples the beam regularly.\n"
+    "fails is INVALID. The laws are fitted to all of them. The octree samples the beam regularly. "
+    "Meshless bodies and "
+    "shells are not calibrated: they have no w and epsilon, and their modulus is given (run "
+    "--young).\n"
     "A modulus goes with the density: --density serves --young alone. It holds for scenes that set "
     "their density: where particles weigh 1 each, as is the default, those at a lattice's surface "
     "weigh too much, and it is 24% stiffer by sag at w 1, 21% at w 2.\n" BENCH_EXIT_CODES;

@@ -214,6 +214,7 @@ TEST(mistakes_are_one_line)
         {"sweep --epsilon 0:1000:1e-6", 2, "is more than 256 numbers"},
         {"sweep --w 1:64 --engine octree --epsilon 0:1:0.005", 2, "12864 points"},
         {"sweep --engine brute", 2, "'brute' is not one of both, fastlsm, octree"},
+        {"sweep --engine shell", 2, "fastlsm, octree: it has no w and epsilon; its Young's"},
         {"sweep --shard 3/2", 2, "--shard: '3/2' is not I/N"},
         {"sweep --shard 1", 2, "--shard: '1' is not I/N"},
         {"sweep --repeats 65", 2, "--repeats: '65'"},
