@@ -1,13 +1,16 @@
 """Elastic bodies beside FastLSM: hands, pins, throws and knobs on them, what is seen of their inside, and the page
 that has none. That they move as the program's own do is test_page.py's."""
 import math
+import pathlib
+import subprocess
+import tempfile
 
 import numpy
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import Select
 
-from page_case import CHANGED, GESTURES, SETTLE, SIDES, WHERE, PageCase
+from page_case import CHANGED, GESTURES, HERE, SETTLE, SIDES, WHERE, PageCase
 
 # The elastic beam, whose end stays where it is.
 STILL = "return shapebench.engine.sceneText('beam-elastic').replace('amplitude = 1.0', 'amplitude = 0.0')"
@@ -55,6 +58,17 @@ class Elastic(PageCase):
         text = self.ask(STILL).replace("box_high = [0.05", "box_high = [0.2")  # held elsewhere: other modes
         self.assertFalse(self.ask("return shapebench.open(values[0], false)", text))
         self.assertIn("found when the page is built", self.ask("return shapebench.engine.absent(1)"))
+
+    def test_a_page_without_says_why(self):
+        text = (HERE.parents[1] / "bench/scenes/beam-elastic.cfg").read_text(encoding="utf-8")
+        with tempfile.TemporaryDirectory() as folder:
+            scene = pathlib.Path(folder, "curved.cfg")
+            scene.write_text(text.replace("meshless = {", 'meshless = { basis = "quadratic";'), encoding="utf-8")
+            made = subprocess.run([HERE / "view", scene, "-o", pathlib.Path(folder, "page.html")],
+                                  stderr=subprocess.PIPE, text=True, check=False)
+        self.assertEqual(made.returncode, 0, made.stderr)
+        self.assertRegex(made.stderr, "no elastic bodies: .*curved.cfg: stored bodies are of the linear basis")
+        self.assertNotIn("is not there", made.stderr)
 
     def test_damaged_ones_are_refused(self):
         said = self.ask("""
