@@ -723,6 +723,17 @@ static SmCode map_whole(const char *name, RefSurfaceMap *map, SmError *error)
     return code;
 }
 
+/* A disk's rim needs four corners: triangles are cut into four where it has fewer. */
+static void give_corners(RefTriangulation *surface)
+{
+    long edges = 0;
+    for (long c = 0; c < 3 * surface->triangles; c++) edges += surface->twin[c] < 0;
+    if (surface->rims != 1 || edges > 3) return;
+    RefTriangulation fine = ref_triangulation_quarter(surface);
+    ref_triangulation_free(surface);
+    *surface = fine;
+}
+
 /* Maps what a mesh has; `share` and `edges` say what is dropped and closed. */
 static SmCode map_mesh(const SmMesh *mesh, const char *name, double share, long edges,
                        RefSurfaceMap *map, SmError *error)
@@ -737,8 +748,7 @@ static SmCode map_mesh(const SmMesh *mesh, const char *name, double share, long 
         while (needs_cylinders(surface) && cut_handle(surface, hole, INFINITY)) map->handles++;
         if (is_punctured(surface))
             map->closed += ref_triangulation_close(surface, largest_hole, 0, 0);
-        if (surface->rims == 1) /* which needs four corners */
-            map->closed += ref_triangulation_close(surface, 0, 3, INFINITY);
+        give_corners(surface);
         code = map_whole(name, map, error);
     }
     if (code == SM_OK && 100 * map->flips > map->triangles)

@@ -53,12 +53,12 @@ typedef struct {
 
 /* Maps the surface. Pieces of up to 1% of the triangles are dropped. Rims are closed, each with a
  * vertex in its middle but those of two edges, that are shorter than a tenth of the root of the
- * area, or than a half if they have three edges; and an only rim of three edges, however long.
- * Handles that one rectangle does not take are cut where a line around them or through their tunnel
- * is shorter than a tenth, and both sides closed. Three and more rims that are all shorter than a
- * half and make no handles, holes of a scan, are closed. Where no map of several cylinders is found
- * that turns no triangle over, the shortest of rims and such lines is closed or cut, too, then two
- * more, then four more, up to a half, and the best map is kept. The mesh has passed
+ * area, or than a half if they have three edges; triangles of an only rim of so few are cut in
+ * four. Handles that one rectangle does not take are cut where a line around them or through their
+ * tunnel is shorter than a tenth, and both sides closed. Three and more rims that are all shorter
+ * than a half and make no handles, holes of a scan, are closed. Where no map of several cylinders
+ * is found that turns no triangle over, the shortest of rims and such lines is closed or cut, too,
+ * then two more, then four more, up to a half, and the best map is kept. The mesh has passed
  * sm_mesh_prepare() or is ref_local_triangles()'s, and is no longer needed afterwards; `name` is
  * for messages. Up to three factorisations of [vertices], for a cap or a sphere one of them and one
  * of [2 * vertices]; as many again where a triangle is turned over at first, or for each of those

@@ -469,6 +469,20 @@ static SmMesh moebius_strip(int around, int fins)
     return mesh;
 }
 
+/* A rim of three edges has no four corners: its triangle is cut into four, and stays open. */
+TEST(a_triangle_is_a_disk)
+{
+    needs_solver();
+    SmMesh mesh = sm_mesh_new(3, 1);
+    memcpy(mesh.position, (double[3][3]){{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, sizeof(double[3][3]));
+    memcpy(mesh.triangle, (int[3]){0, 1, 2}, sizeof *mesh.triangle);
+    RefSurfaceMap map = map_of(&mesh, REF_MAP_DISK);
+    assert_int_equal(map.closed, 0);
+    assert_true(fabs(ref_triangulation_area(ref_surface_map_triangles(&map)) - 0.5) < 1e-12);
+    ref_surface_map_free(&map);
+    sm_mesh_free(&mesh);
+}
+
 TEST(surfaces_without_a_map_are_refused)
 {
     needs_solver();
