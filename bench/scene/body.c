@@ -134,6 +134,12 @@ void bench_scene_hold(const SmMesh *mesh, BenchScene *scene)
     scene->handle[0].select.high[flat ? wide ? 0 : 2 : 1] = 0.1;
 }
 
+void bench_scene_hold_shell(const SmMesh *mesh, BenchScene *scene)
+{
+    bench_scene_hold(mesh, scene);
+    scene->voxel.fill = SM_SHELL;
+}
+
 void bench_scene_sample(const SmMesh *mesh, BenchScene *scene)
 {
     (void)mesh;

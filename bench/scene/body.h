@@ -54,8 +54,10 @@ void bench_scene_drop(const SmMesh *mesh, const char *path, BenchScene *scene);
 void bench_scene_sample(const SmMesh *mesh, BenchScene *scene);
 
 /* Makes it one of the meshless engines': held at its lowest tenth, a mesh that lies flat at one
- * end; gravity as before, no ground; the mesh is taken to be 1 m high, or as long. */
+ * end; gravity as before, no ground; the mesh is taken to be 1 m high, or as long. A shell's needs
+ * no inside. */
 void bench_scene_hold(const SmMesh *mesh, BenchScene *scene);
+void bench_scene_hold_shell(const SmMesh *mesh, BenchScene *scene);
 
 /* Voxelises, and fills in the rest. Takes `mesh` over, also when it fails. Errors as sm_voxelise(),
  * and SM_MEMORY when the scene's engine would not fit (memory.h). */
