@@ -126,6 +126,12 @@ static SmCode make_sheet(const SmEngineParams *params, SmEngine *engine, SmError
                              .damping = {params->damping / (1 - params->damping) / params->h,
                                          options->stiffness_damping},
                              .h = params->h};
+    if (sheet.shell.thickness > sm_box_longest(&box))
+        return sm_fail(
+            error, SM_INPUT,
+            "thickness %g is more than the whole body's length, %g, in the mesh's units: "
+            "give less",
+            sheet.shell.thickness, sm_box_longest(&box));
     memcpy(sheet.gravity, params->gravity, sizeof sheet.gravity);
     double start = sm_now();
     code = ref_sheet_create(&engine->body.map.chart, &sheet, &engine->body.sheet, error);

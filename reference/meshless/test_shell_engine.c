@@ -502,5 +502,9 @@ TEST(what_it_refuses)
     scene.options.material.poisson = 0.3;
     scene.params.strain_limit = 1.5;
     assert_int_equal(create(&scene, &engine, &error), SM_INPUT);
+    scene.params.strain_limit = 0;
+    scene.options.thickness = 1.1;
+    assert_int_equal(create(&scene, &engine, &error), SM_INPUT);
+    assert_non_null(strstr(error.text, "thickness 1.1 is more than"));
     scene_free(&scene, NULL);
 }
