@@ -124,19 +124,24 @@ static bool copy_triangles(Import *import, const struct aiMesh *mesh, bool mirro
     return true;
 }
 
+/* A row's product with a vector, of which a part that does not count may be no number. */
+static double turned(const double row[4], const struct aiVector3D *vector)
+{
+    const double part[3] = {(double)vector->x, (double)vector->y, (double)vector->z};
+    double sum = 0;
+    for (int a = 0; a < 3; a++) sum += row[a] == 0 ? 0 : row[a] * part[a];
+    return sum;
+}
+
 static void copy_vertices(Import *import, const struct aiMesh *mesh, const Transform *transform)
 {
     for (unsigned v = 0; v < mesh->mNumVertices; v++) {
-        const struct aiVector3D *p = &mesh->mVertices[v];
         long vertex = import->header.vertex_count++;
         for (int a = 0; a < 3; a++) {
             const double *r = transform->row[a];
-            import->position[vertex][a] = r[0] * (double)p->x + r[1] * (double)p->y +
-                                          r[2] * (double)p->z + r[3] + import->offset[a];
-            if (!import->of_points) continue;
-            struct aiVector3D n = mesh->mNormals ? mesh->mNormals[v] : (struct aiVector3D){0, 0, 0};
-            import->normal[vertex][a] =
-                r[0] * (double)n.x + r[1] * (double)n.y + r[2] * (double)n.z;
+            import->position[vertex][a] = turned(r, &mesh->mVertices[v]) + r[3] + import->offset[a];
+            if (import->of_points)
+                import->normal[vertex][a] = mesh->mNormals ? turned(r, &mesh->mNormals[v]) : 0;
         }
     }
 }

@@ -158,6 +158,8 @@ TEST(test_unusable_files)
     expect_error(write_text("points.xyz", "1 2 3\n"), NULL, "run --engine meshless");
     expect_error(write_text("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n"), NULL,
                  "the x of a vertex is not a finite number");
+    expect_error(write_text("high.obj", "v 0 0 0\nv 1 0 inf\nv 0 1 0\nf 1 2 3\n"), NULL,
+                 "the z of a vertex is not a finite number");
     expect_error(write_text("number.obj", "v 0 0 0\nv 1 x 0\nv 0 1 0\nf 1 2 3\n"), NULL,
                  "is it damaged or cut off? Export it again");
     expect_error(write_text("same.obj", "v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n"), NULL, "one point");
