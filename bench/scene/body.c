@@ -22,16 +22,29 @@ SmCode bench_mesh_load(const char *mesh, SmMesh *result, SmError *error)
     return sm_import(mesh, NULL, result, error);
 }
 
-/* Whether a file is of points: text, or a PLY file that is no mesh. Else its mesh is read. */
+/* Whether the header of a PLY file says that it has faces. */
+static bool has_faces(const char *path)
+{
+    char line[256];
+    long faces = 0;
+    FILE *file = sm_file_open(path, NULL, NULL);
+    while (file && !faces && fgets(line, sizeof line, file) && strncmp(line, "end_header", 10) != 0)
+        sscanf(line, "element face %ld", &faces);
+    if (file) fclose(file);
+    return faces > 0;
+}
+
+/* Whether a file is of points: text, or a PLY file without faces that is no mesh. Else its mesh is
+ * read. */
 static bool has_points(const char *path, SmMesh *mesh, SmCode *code, SmError *error)
 {
     const char *dot = strrchr(path, '.');
-    bool ply = dot && !strcasecmp(dot, ".ply");
+    bool bare = dot && !strcasecmp(dot, ".ply") && !has_faces(path);
     *mesh = (SmMesh){0};
     *code = SM_OK;
     if (ref_points_text(path)) return true;
-    *code = bench_mesh_load(path, mesh, ply ? NULL : error);
-    if (*code == SM_OK || !ply) return false;
+    *code = bench_mesh_load(path, mesh, bare ? NULL : error);
+    if (*code == SM_OK || !bare) return false;
     *mesh = (SmMesh){0};
     return true;
 }

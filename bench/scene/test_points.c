@@ -198,6 +198,10 @@ TEST(bad_clouds_are_one_clear_line)
     write_text_ball("half.xyz", &(Ball){600, 1, 0, 0.3, false, false});
     write_text("broken.xyz", "0 0 0 0 0 1\n1 0 0 nan 0 1\n");
     write_text("empty.xyz", "");
+    write_text("torn.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+                           "property float y\nproperty float z\nelement face 1\n"
+                           "property list uchar int vertex_indices\nend_header\n"
+                           "0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n");
     static const Mistake mistakes[] = {
         {"run bare.xyz --engine meshless", 3, "bare.xyz: line 1 has three numbers"},
         {"run bare.ply --engine meshless", 3, "bare.ply: the points have no normals"},
@@ -208,6 +212,8 @@ TEST(bad_clouds_are_one_clear_line)
         {"run empty.xyz --engine meshless", 3, "empty.xyz: "},
         {"run absent.xyz --engine meshless", 3, "absent.xyz: "},
         {"run bare.xyz", 3, "bare.xyz"},
+        {"run torn.ply --engine meshless", 3, "torn.ply: the y of a vertex is not a finite number"},
+        {"run torn.ply --engine shell", 3, "torn.ply: the y of a vertex is not a finite number"},
     };
     make_mistakes(mistakes, sizeof mistakes / sizeof *mistakes);
 }
