@@ -734,6 +734,21 @@ static void give_corners(RefTriangulation *surface)
     *surface = fine;
 }
 
+/* Refuses needles, whose area is lost beside their edges' squares. */
+static SmCode check_area(const char *name, const RefTriangulation *surface, SmError *error)
+{
+    double area = ref_triangulation_area(surface), squares = 0, longest = 0;
+    for (long c = 0; c < 3 * surface->triangles; c++) {
+        squares += surface->length[c] * surface->length[c];
+        longest = fmax(longest, surface->length[c]);
+    }
+    if (area > 1e-8 * squares) return SM_OK;
+    return sm_fail(error, SM_INPUT,
+                   "%s: the triangles, with edges of up to %.3g, have an area of %.3g in all: they "
+                   "are but lines; give a surface",
+                   name, longest, area);
+}
+
 /* Maps what a mesh has; `share` and `edges` say what is dropped and closed. */
 static SmCode map_mesh(const SmMesh *mesh, const char *name, double share, long edges,
                        RefSurfaceMap *map, SmError *error)
@@ -742,6 +757,7 @@ static SmCode map_mesh(const SmMesh *mesh, const char *name, double share, long 
     map->surface = sm_alloc(1, sizeof *map->surface);
     RefTriangulation *surface = &map->surface->triangles;
     SmCode code = ref_triangulation_create(mesh, name, share, surface, error);
+    if (code == SM_OK) code = check_area(name, surface, error);
     if (code == SM_OK) {
         map->dropped = mesh->triangle_count - surface->triangles;
         map->closed = ref_triangulation_close(surface, hole, edges, largest_hole);

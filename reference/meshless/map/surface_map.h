@@ -65,8 +65,9 @@ typedef struct {
  * that are tried. The caller frees. Of triangles between points (`of_points`,
  * surface/local_triangles.h) pieces of up to 5% are dropped, and rims of up to twelve edges are
  * closed, too, up to half the root of the area. Errors: triangulation.h's and solver.h's; SM_INPUT,
- * one of several cylinders of whose maps each turns a triangle over, and one whose parts stick out
- * so far that over 1% of the triangles collapse in double precision. */
+ * one whose triangles are but lines, one of several cylinders of whose maps each turns a triangle
+ * over, and one whose parts stick out so far that over 1% of the triangles collapse in double
+ * precision. */
 SmCode ref_surface_map_create(const SmMesh *mesh, bool of_points, const char *name,
                               RefSurfaceMap *map, SmError *error);
 

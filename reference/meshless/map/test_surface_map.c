@@ -494,6 +494,11 @@ TEST(surfaces_without_a_map_are_refused)
     mesh = moebius_strip(20, 0);
     refused(&mesh, "one side only");
     sm_mesh_free(&mesh);
+    mesh = grid_mesh(8, 8, false, false, on_sphere, 0, &seed);
+    for (long v = 0; v < mesh.vertex_count; v++)
+        for (int d = 1; d < 3; d++) mesh.position[v][d] = mesh.position[v][0];
+    refused(&mesh, "they are but lines");
+    sm_mesh_free(&mesh);
     sm_mesh_free(&sphere);
     sm_mesh_free(&ring);
 }
