@@ -241,9 +241,11 @@ static SmCode check(const RefChart *chart, int across, SmError *error)
         cells += across * (double)across * fmax(side[0] / side[1], side[1] / side[0]);
     }
     if (cells < REF_MOST_CELLS) return SM_OK;
-    return sm_fail(error, SM_INPUT,
-                   "a chart of %g by %g with %d cells across needs more than %d: give it fewer",
-                   side[0], side[1], across, REF_MOST_CELLS);
+    return sm_fail(
+        error, SM_INPUT,
+        "a chart of %g by %g with %d cells across needs more than %d: give it fewer, or a less "
+        "slender surface",
+        side[0], side[1], across, REF_MOST_CELLS);
 }
 
 SmCode ref_quadtree_build(const RefChart *chart, int across, double threshold, RefQuadtree *tree,

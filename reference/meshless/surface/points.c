@@ -40,12 +40,13 @@ static SmCode check(long count, const double (*position)[3], const double (*norm
         if (!(isfinite(position[p][0] + position[p][1] + position[p][2]) && size < 1e30 &&
               isfinite(length)))
             return sm_fail(error, SM_INPUT,
-                           "%s: point %ld has a coordinate that is no number, or beyond 1e30", name,
-                           p + 1);
+                           "%s: point %ld has a coordinate that is no number, or beyond 1e30, or "
+                           "such a normal",
+                           name, p + 1);
         if (length > 0 && !(length > 0.5 && length < 1.5))
             return sm_fail(error, SM_INPUT,
                            "%s: point %ld has a normal of length %g, not 1: columns 4 to 6 must be "
-                           "its normal",
+                           "its normal, or of a shell may be missing",
                            name, p + 1, length);
     }
     return SM_OK;

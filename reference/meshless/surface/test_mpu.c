@@ -206,6 +206,8 @@ TEST(text_files)
                  {"1 2 3\n4 5 6\n", "line 1 has three numbers"},
                  {"1 2 3 0 0 1\n1 2 x 0 0 1\n", "line 2 is not"},
                  {"1 2 3 117 73 49\n", "normal of length 146"},
+                 {"1 2 3 255 0 0\n", "of a shell may be missing"},
+                 {"1 2 3 0 0 nan\n", "or such a normal"},
                  {"1 2 nan 0 0 1\n", "no number"},
                  {"1 2 1e999 0 0 1\n", "no number"},
                  {"1 2 3 0 0 1\n1 2 4 0 0 1\n", "too few"},
