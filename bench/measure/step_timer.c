@@ -80,11 +80,12 @@ static bool run_block(Blocks *blocks, double *total, double counter[BENCH_COUNTE
     return good;
 }
 
-/* Warms up and finds how many steps and segments fill a block. */
+/* Warms up and finds how many steps and segments fill a block; if one step does, three are enough.
+ */
 static void size_blocks(Blocks *blocks, double block_seconds)
 {
     double step = INFINITY, chunk = bench_watch_span(blocks->threads);
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 4 && (i < 2 || step < block_seconds); i++) {
         Tally tally = {0};
         run_segment(blocks, i ? 2 : 1, false, &tally);
         step = fmin(step, tally.all.seconds / tally.all.steps);

@@ -9,13 +9,15 @@ SM_INLINE const int *members(const int *list, int name, int side)
     return list + (long)(name / LSM_NAME) * side;
 }
 
-/* Rows are summed on their own first, so that single precision adds numbers of like size. */
+/* Bars and plates are summed on their own first, so that single precision adds numbers of like
+ * size: wide regions have thousands of members. */
 static Row region_up(const Lsm *lsm, int region)
 {
     int side = lsm->side, w = lsm->w;
     const int *plate = lsm->lists.region + (long)region * side;
-    vec4 C = {0}, X = {0}, Y = {0}, Z = {0};
-    for (int c = -w; c <= w; c++)
+    vec4 four[4] = {{0}, {0}, {0}, {0}};
+    for (int c = -w; c <= w; c++) {
+        vec4 flat[4] = {{0}, {0}, {0}, {0}};
         for (int b = -w; b <= w; b++) {
             const int *bar = members(lsm->lists.plate, plate[c + w], side),
                       *particle = members(lsm->lists.bar, bar[b + w], side);
@@ -27,13 +29,11 @@ static Row region_up(const Lsm *lsm, int region)
                 sum[2] += (real)b * p;
                 sum[3] += (real)c * p;
             }
-            C += sum[0];
-            X += sum[1];
-            Y += sum[2];
-            Z += sum[3];
+            for (int i = 0; i < 4; i++) flat[i] += sum[i];
         }
+        for (int i = 0; i < 4; i++) four[i] += flat[i];
+    }
     real row[16];
-    const vec4 four[4] = {C, X, Y, Z};
     for (int i = 0; i < 4; i++) store4(row + 4 * i, four[i]);
     return row_load(row);
 }
@@ -43,7 +43,8 @@ static vec4 particle_down(const Lsm *lsm, int region)
     int side = lsm->side, w = lsm->w;
     const int *plate = lsm->lists.region + (long)region * side;
     vec4 sum = {0};
-    for (int c = -w; c <= w; c++)
+    for (int c = -w; c <= w; c++) {
+        vec4 flat = {0};
         for (int b = -w; b <= w; b++) {
             const int *bar = members(lsm->lists.plate, plate[c + w], side),
                       *particle = members(lsm->lists.bar, bar[b + w], side);
@@ -53,8 +54,10 @@ static vec4 particle_down(const Lsm *lsm, int region)
                 row += load4(T) - (real)a * load4(T + 12) - (real)b * load4(T + 8) -
                        (real)c * load4(T + 4);
             }
-            sum += row;
+            flat += row;
         }
+        sum += flat;
+    }
     return sum;
 }
 
