@@ -74,9 +74,6 @@
  *   the roots of their diagonals, from those of the same nodes where the map is cut open half a
  *   side farther along its first axis.
  * - frames: ms a frame of `scene`'s shell with so many nodes, range `n`, against their number.
- * - bursting: one point: of `scene`'s shell that breaks, once through its frames, `field`:
- *   "step-ratio", a step with new cracks by one without, medians; "growth-percent", the
- *   nodes that it gains.
  * - left: what is left of `scene`'s deformation, rms cells from the best rigid motion of the rest
  *   shape, after so many frames, range `n`, and as many with nothing that holds, pushes or stops
  *   the body, over the last half of these; damped at every `every`-th step if given; also
@@ -111,7 +108,6 @@ typedef enum {
     BENCH_TRY_CELLS,
     BENCH_TRY_SEAM,
     BENCH_TRY_FRAMES,
-    BENCH_TRY_BURSTING,
 } BenchTry;
 
 typedef enum {

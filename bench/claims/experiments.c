@@ -96,8 +96,6 @@ static const Kind kinds[] = {
                         .run = bench_shell_seam},
     [BENCH_TRY_FRAMES] = {"frames", "nodes", "ms/frame", "scene|n", .run = bench_shell_frames,
                           .timed = true},
-    [BENCH_TRY_BURSTING] = {"bursting", "-", NULL, "scene|field", BENCH_BURST_FIELDS,
-                            .run = bench_shell_bursting},
     [BENCH_TRY_LEFT] = {"left", "frames", "rms distance from the rest shape, cells",
                         "scene|field|without|every|n", "|played|smoothed", .run = bench_rest_left},
     [BENCH_TRY_PUSHED] = {"pushed", "-", NULL, "scene|field|without", BENCH_PUSHED_FIELDS,

@@ -63,9 +63,8 @@ double bench_structure_side(const SmVoxels *voxels, int w);
 #define BENCH_SUBSUM_FIELDS "one-bar|one-plate"
 
 /* How nodes lie on a shell, and what its frames cost (shell_experiments.c). */
-BenchMeasuring bench_shell_cells, bench_shell_seam, bench_shell_frames, bench_shell_bursting;
-#define BENCH_CELL_FIELDS  "spread|least-covers"
-#define BENCH_BURST_FIELDS "step-ratio|growth-percent"
+BenchMeasuring bench_shell_cells, bench_shell_seam, bench_shell_frames;
+#define BENCH_CELL_FIELDS "spread|least-covers"
 
 /* Where bodies come to rest (rest_experiments.c). */
 BenchMeasuring bench_rest_left, bench_rest_pushed;

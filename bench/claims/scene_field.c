@@ -85,6 +85,15 @@ static void add_damping(const BenchRow *row, BenchCurve *curve)
     free(ratio);
 }
 
+/* How many it has more, at most, than at first: of bodies that are refined, or of a shell that
+ * breaks; in percent. */
+static double nodes_gained(const BenchRow *row)
+{
+    const BenchElasticRow *elastic = &row->elastic;
+    if (elastic->nodes) return 100 * ((double)elastic->end_nodes / (double)elastic->nodes - 1);
+    return 100.0 * (double)row->change.most_added / (double)row->change.first_nodes;
+}
+
 static void add_made(const BenchRow *row, int steps_per_frame, const char *name, BenchCurve *curve)
 {
     static const unsigned thirds[] = {1U << SM_FAST_SUM | 1U << SM_SHAPE_MATCHING, 1U << SM_POLAR,
@@ -110,9 +119,8 @@ static void add_made(const BenchRow *row, int steps_per_frame, const char *name,
     else if (!strcmp(name, "thirds_percent"))
         for (int t = 0; t < 3; t++) add_share(row, thirds[t], 3, curve);
     else {
-        double value = !strcmp(name, "cost_growth")
-                           ? change->last_ms / change->first_ms
-                           : 100.0 * (double)change->most_added / (double)change->first_nodes;
+        double value =
+            !strcmp(name, "cost_growth") ? change->last_ms / change->first_ms : nodes_gained(row);
         bench_curve_add(curve, 0, value, value, value);
     }
 }

@@ -7,7 +7,6 @@
 #include "../../lib/system/clock.h"
 #include "../../reference/meshless/shell_engine.h"
 #include "../check/shell_check.h"
-#include "../measure/burst.h"
 #include "../scene/map.h"
 #include "experiments.h"
 
@@ -246,57 +245,5 @@ SmCode bench_shell_frames(const BenchExperiment *of, SmError *error)
         time_frames(of, &runner, count);
         bench_runner_free(&runner);
     }
-    return code;
-}
-
-/* ---- bursting */
-
-/* A step with new cracks by one without. */
-static void add_ratio(const BenchExperiment *of, const BenchBurst *burst)
-{
-    size_t steps = (size_t)burst->steps;
-    double *seconds[2] = {sm_alloc(steps, sizeof(double)), sm_alloc(steps, sizeof(double))};
-    int count[2];
-    for (int cracked = 0; cracked < 2; cracked++)
-        count[cracked] = bench_burst_seconds(burst, cracked, seconds[cracked]);
-    if (!count[0] || !count[1]) {
-        bench_curve_fail(of->curve, "%d steps with new cracks and %d without", count[1], count[0]);
-    } else {
-        of->curve->busy = bench_watch_busy(&burst->watch) && of->curve->valid;
-        if (of->curve->busy)
-            bench_curve_fail(of->curve, "others took its processors (load average %.1f)",
-                             bench_load_average());
-        BenchInterval whole = bench_curve_interval(seconds[0], count[0], 0.5, 2);
-        BenchInterval crack = bench_curve_interval(seconds[1], count[1], 0.5, 2);
-        bench_curve_add(of->curve, 0, crack.value / whole.value, crack.low / whole.high,
-                        crack.high / whole.low);
-    }
-    sm_free_all(seconds[0], seconds[1]);
-}
-
-SmCode bench_shell_bursting(const BenchExperiment *of, SmError *error)
-{
-    if (strcmp(of->scene->engine, ref_shell_engine.name) != 0 ||
-        !(of->scene->meshless.strength > 0))
-        return sm_fail(error, SM_INPUT, "'%.60s' is no shell that breaks", of->scene->name);
-    BenchBurst burst;
-    BenchPlayback play;
-    SmCode code = bench_burst_create(of->scene, 1, &burst, error);
-    if (code) return code;
-    code = bench_playback_create(of->scene, of->body, &ref_shell_engine, 1, of->lab->seed, &play,
-                                 error);
-    if (!code) {
-        bench_burst_round(&burst, &play);
-        bench_burst_count(&burst);
-        if (ref_shell_body(bench_playback_runner(&play)->engine)->broke)
-            bench_curve_fail(of->curve, "a crack could not be followed");
-        if (!strcmp(of->measure->field, "growth-percent"))
-            bench_curve_exact(of->curve, 0,
-                              100 * ((double)burst.nodes[1] / (double)burst.nodes[0] - 1));
-        else
-            add_ratio(of, &burst);
-        bench_playback_free(&play);
-    }
-    bench_burst_free(&burst);
     return code;
 }

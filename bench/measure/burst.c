@@ -82,7 +82,8 @@ void bench_burst_count(BenchBurst *burst)
     }
 }
 
-int bench_burst_seconds(const BenchBurst *burst, bool cracked, double *seconds)
+/* The seconds of steps that made cracks, or of those that did not, into [steps]; how many. */
+static int seconds_of(const BenchBurst *burst, bool cracked, double *seconds)
 {
     int count = 0;
     for (long s = 0; s < burst->steps; s++)
@@ -97,7 +98,7 @@ static void count_again(const BenchBurst *burst, BenchElasticRow *elastic)
     size_t steps = (size_t)burst->steps;
     double *cells = sm_alloc(steps, sizeof *cells), *share = sm_alloc(steps, sizeof *share);
     double *ms = sm_alloc(steps, sizeof *ms), start, slope, variance[3], squares;
-    int count = bench_burst_seconds(burst, true, ms);
+    int count = seconds_of(burst, true, ms);
     for (long s = 0, c = 0; s < burst->steps; s++) {
         if (!burst->cracked[s]) continue;
         cells[c] = (double)burst->cells[s][0];
@@ -116,12 +117,12 @@ void bench_burst_row(const BenchBurst *burst, BenchRow *row)
 {
     size_t steps = (size_t)burst->steps;
     double *whole = sm_alloc(steps, sizeof *whole);
-    int calm = bench_burst_seconds(burst, false, whole);
+    int calm = seconds_of(burst, false, whole);
     row->total = sm_alloc(steps, sizeof *row->total);
     row->stage = sm_alloc(steps, sizeof *row->stage);
     row->counter = NULL;
     row->steps = 1;
-    row->repeats = bench_burst_seconds(burst, calm < burst->steps, row->total);
+    row->repeats = seconds_of(burst, calm < burst->steps, row->total);
     for (long s = 0, r = 0; s < burst->steps; s++)
         if (burst->cracked[s] == (calm < burst->steps))
             memcpy(row->stage[r++], burst->stage[s], sizeof *row->stage);

@@ -32,9 +32,6 @@ void bench_burst_round(BenchBurst *burst, BenchPlayback *play);
  * undisturbed. */
 void bench_burst_count(BenchBurst *burst);
 
-/* The seconds of steps that made cracks, or of those that did not, into [steps]; how many. */
-int bench_burst_seconds(const BenchBurst *burst, bool cracked, double *seconds);
-
 /* The row's times and samples, which are those of the steps that made cracks, and its nodes in the
  * end; one without such steps, of which all steps are the samples, or whose rounds differ, is
  * invalid. */
