@@ -2,6 +2,7 @@
 scenes that change, and threads."""
 import numpy as np
 
+import papers
 from drawing import COLOURS, MARKS, PAPER, STATUS_MARKS, Figure, canvas, legend_above, number
 from tables import explain_marks, of_stages, scenes_of, stage_names
 
@@ -22,6 +23,15 @@ def share_bars(axes, y, values, height, alpha, statuses=()):
         axes.text(sum(values[:s]) + values[s] / 2, y, STATUS_MARKS.get(status, ""), ha="center", va="center", fontsize=9)
 
 
+def thirds_bar(axes, y, stages, third):
+    """What the octree paper says of its examples; the stages of its first third are one above the other."""
+    for left, names in ((0, ("fast_sum", "shape_matching")), (third, ("polar",)), (2 * third, ("damping",))):
+        height = 0.2 / len(names)
+        for n, name in enumerate(names):
+            axes.barh(y - 0.1 + (n + 0.5) * height, third, height, left=left, color=COLOURS[stages.index(name)], alpha=0.45)
+    return [third if name in ("polar", "damping") else None for name in stages]
+
+
 def stage_shares(rows):
     """Percent of a step in each stage; the paper's beneath, pale."""
     rows = valid(rows)
@@ -29,7 +39,8 @@ def stage_shares(rows):
         return None
     stages = stage_names(rows)
     figure, axes = canvas(1 + 0.36 * len(rows))
-    data, shown, marked = [], [], []
+    data, shown, marked, thirds = [], [], [], False
+    third = papers.number("octree", "hand-third")
     for y, row in enumerate(rows):
         shares = 100 * np.array(of_stages(row, "stage_ms", stages, 0.0)) / row["total_ms"]
         share_bars(axes, y - 0.13, shares, 0.42, 1)
@@ -43,6 +54,9 @@ def stage_shares(rows):
             shown += statuses
             marked += [f"the paper's {STAGE_TITLES.get(s, s)} of {row['scene']} ({STATUS_MARKS[status]})"
                        for s, status in zip(stages, statuses) if status in STATUS_MARKS]
+        elif third and row["paper"] == row["engine"] == "octree":
+            data.append([row["scene"], "paper"] + thirds_bar(axes, y + 0.25, stages, third) + [""])
+            thirds = True
     axes.set_yticks(range(len(rows)), [row["scene"] for row in rows])
     axes.set_ylim(len(rows) - 0.4, -0.6)
     axes.set_xlim(0, 100)
@@ -54,7 +68,8 @@ def stage_shares(rows):
     largest = [f"{row['scene']}: {STAGE_TITLES.get(name, name)} most" for row, name in zip(rows, most)]
     return Figure("stage-shares", "Where a step's time goes",
                   "Share of each stage in a step; thin pale bars are the paper's, where it gives them."
-                  + explain_marks(shown),
+                  + (" The octree paper's are thirds, of its hand and roughly of its other examples: fast sums with shape "
+                     "matching (together), polar decompositions, and damping." if thirds else "") + explain_marks(shown),
                   "Stacked bars, one for each scene. " + "; ".join(largest + marked) + ".",
                   ["scene", "source"] + [s + "_percent" for s in stages] + ["statuses"], data).draw(figure)
 

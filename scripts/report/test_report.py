@@ -31,6 +31,7 @@ import draft  # noqa: E402
 import drawing  # noqa: E402
 import headline  # noqa: E402
 import main  # noqa: E402
+import row_figures  # noqa: E402
 import sources  # noqa: E402
 import tables  # noqa: E402
 
@@ -338,6 +339,18 @@ class Report(unittest.TestCase):
         with mock.patch("papers.FOLDERS", (self.at("none"),)):
             paper = tables.shells(source).lines[1][1]
         self.assertEqual(paper, ["paper", "40,000", "–", "–", "–", "–", "–", "20.0", ""])
+
+    def test_the_octree_papers_thirds_are_beside_its_examples(self):
+        rows = sources.read(os.path.join(SOURCES, "results", "published", "octree.h5")).rows
+        figure = row_figures.stage_shares(rows)
+        of_paper = {line[0]: line[2:] for line in figure.data if line[1] == "paper"}
+        self.assertEqual(set(of_paper), {row["scene"] for row in rows if row["engine"] == "octree"})
+        self.assertEqual(of_paper["liver"], [None, None, 33.3, 33.3, None, ""])
+        self.assertIn("octree paper's are thirds", figure.caption)
+        with mock.patch("papers.FOLDERS", (self.at("none"),)):
+            figure = row_figures.stage_shares(rows)
+        self.assertNotIn("paper", [line[1] for line in figure.data])
+        self.assertNotIn("thirds", figure.caption)
 
     def test_what_all_rows_have_alike_is_said_above_them(self):
         table = tables.measured(sources.read(self.rows))
