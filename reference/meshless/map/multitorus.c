@@ -9,7 +9,7 @@
 #include "holomorphic.h"
 #include "zeros.h"
 
-enum { TRIED = 80, MOST_TRIANGLES = 100000, MOST_FORMS = 16 };
+enum { TRIED = 80, MOST_TRIANGLES = 100000, MOST_PARTS = 16 };
 /* Cells for each zero that are as bad as 1 of a form's score; and roots of each cylinder that are
  * too many. */
 static const double MANY_CELLS = 20, MOST_ROOTS = 100;
@@ -169,12 +169,11 @@ SmCode ref_multitorus_unfold(RefTriangulation *surface, const char *name, double
 {
     Attempt best = {.zeros = 0};
     bool found;
-    int forms = 2 * surface->genus + surface->rims;
-    if (forms > MOST_FORMS)
+    if (surface->genus + surface->rims > MOST_PARTS)
         return sm_fail(error, SM_INPUT,
-                       "%s: a surface of genus %d with %d rims: the search for its best map takes "
-                       "handles and rims up to %d, handles counted twice; cut or close some",
-                       name, surface->genus, surface->rims, MOST_FORMS);
+                       "%s: a surface of genus %d with %d rims: a map takes %d handles and rims at "
+                       "most; cut or close some",
+                       name, surface->genus, surface->rims, MOST_PARTS);
     SmCode code = unfold(surface, name, &best, &found, error);
     RefTriangulation fine = {.triangles = 0};
     long most = MOST_TRIANGLES / (surface->genus + surface->rims);

@@ -13,10 +13,10 @@
  * one is taken whose cylinders need few cells. Where there is none, zeros may have wide angles; and
  * as a surface that is nearly symmetric has zeros that are nearly on one leaf, with a flat cylinder
  * between them, they are then brought onto one, which turns angles near them (zeros.h). `name` is
- * for messages. Errors, and the surface unchanged: holomorphic.h's; SM_INPUT, handles, counted
- * twice, and rims above 16 together, or a surface of which each form that was tried turns a
- * triangle over or has a cylinder a hundred times as long as wide. O(triangles) for each form,
- * beside factorisations. */
+ * for messages. Errors, and the surface unchanged: holomorphic.h's; SM_INPUT, more than 16 handles
+ * and rims together, whose many cylinders would take a shell too many cells, or a surface of which
+ * each form that was tried turns a triangle over or has a cylinder a hundred times as long as wide.
+ * O(triangles) for each form, beside factorisations. */
 SmCode ref_multitorus_unfold(RefTriangulation *surface, const char *name, double *step[2],
                              RefLeaves *leaves, SmError *error);
 

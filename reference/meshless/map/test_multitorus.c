@@ -440,3 +440,13 @@ TEST(no_handle_or_rim_is_lost)
         check_and_free(&mesh, &map, 5);
     }
 }
+
+/* As many as the search takes. */
+TEST(sixteen_handles_are_kept)
+{
+    needs_solver();
+    SmMesh mesh = tori_anywhere(16, 0, 160, 5);
+    RefSurfaceMap map = map_of(&mesh, REF_MAP_MULTITORUS, 16);
+    check_cylinders(&mesh, &map);
+    check_and_free(&mesh, &map, 5);
+}

@@ -77,7 +77,7 @@ static inline SmMesh sphere_mesh(int n, double noise, unsigned *seed)
  * distances. */
 typedef struct {
     int tori;
-    double centre[4][2], ring[4], tube[4];
+    double centre[16][2], ring[16], tube[16];
 } Tori;
 
 static inline double tori_at(const void *body, const double x[3], double gradient[3])
