@@ -6,6 +6,7 @@
 #include "../store/h5.h"
 #include "claim_store.h"
 #include "claim_table.h"
+#include "experiments.h"
 
 /* A claim to change words of. */
 static const char good[] =
@@ -161,8 +162,10 @@ static bool place_is_known(const char *paper, const char *place)
     return sscanf(place, ".%d%n", &sub, &used) == 1 && !place[used] && sub >= 1 && sub <= 3;
 }
 
+/* And no experiment is without a claim. */
 TEST(the_programs_own_claims_are_sound)
 {
+    bool used[64] = {false}; /* more than there are */
     BenchClaims claims = {0};
     SmError error;
     int kinds[BENCH_CLAIM_KINDS] = {0};
@@ -174,11 +177,14 @@ TEST(the_programs_own_claims_are_sound)
             fail_msg("%s of %s: '%s'", claim->name, claim->paper, claim->place);
         assert_true(claim->unit[0]);
         kinds[claim->kind]++;
+        used[claim->measure.experiment] = true;
         char test[96];
         bench_verdict_test(&claims.claim[c], sizeof test, test);
         assert_true(strlen(test) > 4);
     }
     for (int k = 0; k < BENCH_CLAIM_KINDS; k++) assert_true(kinds[k] >= 5);
+    for (int e = BENCH_TRY_NOTHING + 1; bench_experiment_names()[e]; e++)
+        if (!used[e]) fail_msg("no claim is measured by '%s'", bench_experiment_names()[e]);
     bench_claims_free(&claims);
 }
 
