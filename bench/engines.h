@@ -23,7 +23,12 @@ typedef struct BenchChecker BenchChecker; /* measure/checker.h */
 typedef struct BenchRow BenchRow;         /* measure/row.h */
 typedef struct BenchModes BenchModes;     /* play/mode.h */
 
-enum { BENCH_MOST_ENGINES = 16, BENCH_MOST_PLANNED = 4, BENCH_ENGINES_TEXT = 128 };
+enum {
+    BENCH_MOST_ENGINES = 16,
+    BENCH_MOST_PLANNED = 4,
+    BENCH_ENGINES_TEXT = 128,
+    BENCH_ENGINES_WORD = 12
+};
 
 typedef struct {
     const SmEngineType *type[2]; /* one a precision, the default first; NULL: there is no other */

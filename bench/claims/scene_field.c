@@ -85,12 +85,12 @@ static void add_damping(const BenchRow *row, BenchCurve *curve)
     free(ratio);
 }
 
-/* How many it has more, at most, than at first: of bodies that are refined, or of a shell that
- * breaks; in percent. */
+/* In percent of those at first: of a shell what it has more in the end, of bodies that are refined
+ * the most that a frame adds. */
 static double nodes_gained(const BenchRow *row)
 {
     const BenchElasticRow *elastic = &row->elastic;
-    if (elastic->nodes) return 100 * ((double)elastic->end_nodes / (double)elastic->nodes - 1);
+    if (elastic->end_nodes) return 100 * ((double)elastic->end_nodes / (double)elastic->nodes - 1);
     return 100.0 * (double)row->change.most_added / (double)row->change.first_nodes;
 }
 

@@ -6,8 +6,8 @@
  * steps_per_frame steps each), ns_per_particle_step, body_ms (a step by the number of bodies) and
  * fast_sum_ms, polar_ms and so on (a stage), with confidence intervals; stage_percent (a point for
  * every stage), thirds_percent (summation with matching, polar, damping), damping_by_matching
- * (damping by sums and matching); of scenes that change, and shells that break,
- * growth_percent (of nodes); of the former cost_growth (last_ms / first_ms). */
+ * (damping by sums and matching); growth_percent (of the nodes of scenes that change and of shells
+ * that break); of scenes that change cost_growth (last_ms / first_ms). */
 #ifndef BENCH_SCENE_FIELD_H
 #define BENCH_SCENE_FIELD_H
 

@@ -165,7 +165,7 @@ static bool place_is_known(const char *paper, const char *place)
 /* And no experiment is without a claim. */
 TEST(the_programs_own_claims_are_sound)
 {
-    bool used[64] = {false}; /* more than there are */
+    bool used[64] = {false};
     BenchClaims claims = {0};
     SmError error;
     int kinds[BENCH_CLAIM_KINDS] = {0};
@@ -177,6 +177,7 @@ TEST(the_programs_own_claims_are_sound)
             fail_msg("%s of %s: '%s'", claim->name, claim->paper, claim->place);
         assert_true(claim->unit[0]);
         kinds[claim->kind]++;
+        assert_true(claim->measure.experiment < 64);
         used[claim->measure.experiment] = true;
         char test[96];
         bench_verdict_test(&claims.claim[c], sizeof test, test);

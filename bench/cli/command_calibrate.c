@@ -69,9 +69,8 @@ static const char help[] =
     "measured for all w, other lengths and time steps for the first, middle and last, at the first "
     "epsilon. Every specimen is checked against brute force, and that it is at rest; one that "
     "fails is INVALID. The laws are fitted to all of them. The octree samples the beam regularly. "
-    "Meshless bodies and "
-    "shells are not calibrated: they have no w and epsilon, and their modulus is given (run "
-    "--young).\n"
+    "Meshless bodies and shells are not calibrated: they have no w and epsilon, and their modulus "
+    "is given (run --young).\n"
     "A modulus goes with the density: --density serves --young alone. It holds for scenes that set "
     "their density: where particles weigh 1 each, as is the default, those at a lattice's surface "
     "weigh too much, and it is 24% stiffer by sag at w 1, 21% at w 2.\n" BENCH_EXIT_CODES;

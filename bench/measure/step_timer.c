@@ -80,8 +80,8 @@ static bool run_block(Blocks *blocks, double *total, double counter[BENCH_COUNTE
     return good;
 }
 
-/* Warms up and finds how many steps and segments fill a block; if one step does, three are enough.
- */
+/* Warms up and finds how many steps and segments fill a block; if one step does, three timed ones
+ * are enough. */
 static void size_blocks(Blocks *blocks, double block_seconds)
 {
     double step = INFINITY, chunk = bench_watch_span(blocks->threads);

@@ -191,6 +191,16 @@ static void write_cubes(const char *name, const char *there)
     fclose(file);
 }
 
+TEST(a_triangle_alone_is_a_shell)
+{
+    needs_solver();
+    Result result;
+    write_text("loose.obj", "v 0 0 0\nv 3 1 2\nv 1 3 1\nf 1 2 3\n");
+    run("run loose.obj --engine shell --nodes 60 --frames 1 --no-output", &result);
+    assert_int_equal(result.code, 0);
+    assert_non_null(strstr(result.out, "nodes of a disk"));
+}
+
 TEST(what_has_no_map_is_one_clear_line)
 {
     needs_solver();
@@ -203,10 +213,6 @@ TEST(what_has_no_map_is_one_clear_line)
     };
     make_mistakes(mistakes, sizeof mistakes / sizeof *mistakes);
     Result result;
-    write_text("loose.obj", "v 0 0 0\nv 3 1 2\nv 1 3 1\nf 1 2 3\n");
-    run("run loose.obj --engine shell --nodes 60 --frames 1 --no-output", &result);
-    assert_int_equal(result.code, 0);
-    assert_non_null(strstr(result.out, "nodes of a disk"));
     write_cubes("one.obj", "####.#.######..");
     run("info one.obj --map --nodes 40", &result);
     assert_int_equal(result.code, 0);

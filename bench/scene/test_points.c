@@ -325,7 +325,7 @@ TEST(real_clouds)
     assert_runs("oni.xyz");
     run("run points_utm_offset.xyz --engine meshless", &result);
     assert_int_equal(result.code, 3);
-    assert_non_null(strstr(result.err, "columns 4 to 6 must be its normal"));
+    assert_non_null(strstr(result.err, "not 1 (text: columns 4 to 6; PLY: nx ny nz)"));
     run("run bunny_points.pts --engine meshless", &result);
     assert_int_equal(result.code, 3);
     assert_non_null(strstr(result.err, "the points have no normals"));

@@ -127,11 +127,11 @@ static SmCode make_sheet(const SmEngineParams *params, SmEngine *engine, SmError
                                          options->stiffness_damping},
                              .h = params->h};
     if (sheet.shell.thickness > sm_box_longest(&box))
-        return sm_fail(
-            error, SM_INPUT,
-            "thickness %g is more than the whole body's length, %g, in the mesh's units: "
-            "give less",
-            sheet.shell.thickness, sm_box_longest(&box));
+        return sm_fail(error, SM_INPUT,
+                       "thickness %g is more than the body's longest extent, %g, both in the "
+                       "mesh's units: give "
+                       "less, or none for a hundredth of that",
+                       sheet.shell.thickness, sm_box_longest(&box));
     memcpy(sheet.gravity, params->gravity, sizeof sheet.gravity);
     double start = sm_now();
     code = ref_sheet_create(&engine->body.map.chart, &sheet, &engine->body.sheet, error);

@@ -68,8 +68,8 @@ def stage_shares(rows):
     largest = [f"{row['scene']}: {STAGE_TITLES.get(name, name)} most" for row, name in zip(rows, most)]
     return Figure("stage-shares", "Where a step's time goes",
                   "Share of each stage in a step; thin pale bars are the paper's, where it gives them."
-                  + (" The octree paper's are thirds, of its hand and roughly of its other examples: fast sums with shape "
-                     "matching (together), polar decompositions, and damping." if thirds else "") + explain_marks(shown),
+                  + (" The octree paper's are thirds, of its hand and roughly of its other examples, without low-level "
+                     "optimisation: fast sums with shape matching (together), polar decompositions, and damping." if thirds else "") + explain_marks(shown),
                   "Stacked bars, one for each scene. " + "; ".join(largest + marked) + ".",
                   ["scene", "source"] + [s + "_percent" for s in stages] + ["statuses"], data).draw(figure)
 

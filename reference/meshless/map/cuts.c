@@ -1,5 +1,6 @@
 #include "cuts.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -79,6 +80,7 @@ static void find_corners(const RefTriangulation *surface, double share, int corn
     int first = 0, count = 0, place[4];
     while (surface->rim[first] < 0) first++;
     for (int at = first; count == 0 || at != first; at = ref_rim_next(surface, at)) count++;
+    assert(count >= 4);
     int *rim = sm_alloc((size_t)count, sizeof *rim);
     double *along = sm_alloc((size_t)count, sizeof *along), whole = 0;
     double(*x)[3] = sm_alloc((size_t)count, sizeof *x);

@@ -681,9 +681,21 @@ static bool simplify(RefSurfaceMap *map)
     return true;
 }
 
+/* A disk's rim needs four corners: triangles are cut into four where it has fewer. */
+static void give_corners(RefTriangulation *surface)
+{
+    long edges = 0;
+    for (long c = 0; c < 3 * surface->triangles; c++) edges += surface->twin[c] < 0;
+    if (kind_of(surface) != REF_MAP_DISK || edges > 3) return;
+    RefTriangulation fine = ref_triangulation_quarter(surface);
+    ref_triangulation_free(surface);
+    *surface = fine;
+}
+
 static SmCode map_mended(const char *name, RefSurfaceMap *map, SmError *error)
 {
     RefTriangulation *surface = &map->surface->triangles;
+    give_corners(surface);
     ref_triangulation_delaunay(surface);
     ref_triangulation_split(surface);
     SmCode code = map_any(name, map, error);
@@ -723,17 +735,6 @@ static SmCode map_whole(const char *name, RefSurfaceMap *map, SmError *error)
     return code;
 }
 
-/* A disk's rim needs four corners: triangles are cut into four where it has fewer. */
-static void give_corners(RefTriangulation *surface)
-{
-    long edges = 0;
-    for (long c = 0; c < 3 * surface->triangles; c++) edges += surface->twin[c] < 0;
-    if (surface->rims != 1 || edges > 3) return;
-    RefTriangulation fine = ref_triangulation_quarter(surface);
-    ref_triangulation_free(surface);
-    *surface = fine;
-}
-
 /* Refuses needles, whose area is lost beside their edges' squares. */
 static SmCode check_area(const char *name, const RefTriangulation *surface, SmError *error)
 {
@@ -743,10 +744,11 @@ static SmCode check_area(const char *name, const RefTriangulation *surface, SmEr
         longest = fmax(longest, surface->length[c]);
     }
     if (area > 1e-8 * squares) return SM_OK;
-    return sm_fail(error, SM_INPUT,
-                   "%s: the triangles, with edges of up to %.3g, have an area of %.3g in all: they "
-                   "are but lines; give a surface",
-                   name, longest, area);
+    return sm_fail(
+        error, SM_INPUT,
+        "%s: the triangles, with edges of up to %.3g, have next to no area: they are but "
+        "lines; give a surface",
+        name, longest);
 }
 
 /* Maps what a mesh has; `share` and `edges` say what is dropped and closed. */
@@ -764,7 +766,6 @@ static SmCode map_mesh(const SmMesh *mesh, const char *name, double share, long 
         while (needs_cylinders(surface) && cut_handle(surface, hole, INFINITY)) map->handles++;
         if (is_punctured(surface))
             map->closed += ref_triangulation_close(surface, largest_hole, 0, 0);
-        give_corners(surface);
         code = map_whole(name, map, error);
     }
     if (code == SM_OK && 100 * map->flips > map->triangles)

@@ -514,14 +514,14 @@ TEST(what_is_no_manifold_says_where)
     static const int at_vertex[2][3] = {{0, 1, 2}, {0, 3, 4}};
     memcpy(mesh.position, corner, sizeof corner);
     memcpy(mesh.triangle, at_edge, sizeof at_edge);
-    refused(&mesh, "more than two triangles meet in 1 edge from (0, 0, 0) to (1, 0, 0); parted "
-                   "there: 2 surfaces");
+    refused(&mesh, "2 of 3 triangles: give the shell one; it is non-manifold, too: more than two "
+                   "triangles meet in 1 edge from (0, 0, 0) to (1, 0, 0), where it is parted");
     memcpy(mesh.triangle, at_vertex, sizeof at_vertex);
     mesh.triangle_count = 2;
     refused(&mesh, "(two touch in a vertex, at (0, 0, 0))");
     sm_mesh_free(&mesh);
     mesh = moebius_strip(80, 1);
-    refused(&mesh, "parted there: the surface has one side only");
+    refused(&mesh, "a shell needs two; it is non-manifold, too");
     sm_mesh_free(&mesh);
     mesh = moebius_strip(600, 0);
     refused(&mesh, "one side only");

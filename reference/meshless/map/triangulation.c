@@ -208,10 +208,10 @@ static Pieces find_pieces(RefTriangulation *surface)
 
 static void write_place(const double x[3], char text[64])
 {
-    snprintf(text, 64, "(%.6g, %.6g, %.6g)", x[0], x[1], x[2]);
+    snprintf(text, 64, "(%.9g, %.9g, %.9g)", x[0], x[1], x[2]);
 }
 
-/* What a refusal of a surface that was parted begins with. */
+/* What a refusal of a surface that was parted ends with. */
 static void write_crowded(const SmMesh *mesh, const Crowded *crowded, char text[256])
 {
     char end[2][64];
@@ -219,8 +219,8 @@ static void write_crowded(const SmMesh *mesh, const Crowded *crowded, char text[
     text[0] = 0;
     if (crowded->count > 0)
         snprintf(text, 256,
-                 "non-manifold: more than two triangles meet in %ld edge%s from %s to %s; parted "
-                 "there: ",
+                 "; it is non-manifold, too: more than two triangles meet in %ld edge%s from %s to "
+                 "%s, where it is parted",
                  crowded->count, crowded->count == 1 ? "" : "s, one", end[0], end[1]);
 }
 
@@ -245,19 +245,19 @@ static void write_touch(const SmMesh *mesh, const RefTriangulation *surface, con
 static SmCode refuse(const SmMesh *mesh, const Crowded *crowded, const RefTriangulation *surface,
                      const Pieces *pieces, bool one_sided, const char *name, SmError *error)
 {
-    char before[256], touch[128];
-    write_crowded(mesh, crowded, before);
+    char crowd[256], touch[128];
+    write_crowded(mesh, crowded, crowd);
     if (one_sided)
         return sm_fail(error, SM_INPUT,
-                       "%s: %sthe surface has one side only, as a Moebius strip has: a shell "
-                       "needs two",
-                       name, before);
+                       "%s: the surface has one side only, as a Moebius strip has: a shell needs "
+                       "two%s",
+                       name, crowd);
     write_touch(mesh, surface, pieces->of, touch);
     return sm_fail(error, SM_INPUT,
-                   "%s: %s%d surfaces that do not hang together by edges%s, the largest with %ld "
-                   "of %ld triangles: give the shell one",
-                   name, before, pieces->count, crowded->count ? "" : touch, pieces->largest,
-                   surface->triangles);
+                   "%s: %d surfaces that do not hang together by edges%s, the largest with %ld "
+                   "of %ld triangles: give the shell one%s",
+                   name, pieces->count, crowded->count ? "" : touch, pieces->largest,
+                   surface->triangles, crowd);
 }
 
 /* Keeps the largest piece, oriented, where the others have no more than `share`. A few edges may be

@@ -53,8 +53,8 @@ static inline int ref_rim_next(const RefTriangulation *surface, int corner)
 
 /* Glues a mesh's triangles, turns those round that disagree with their neighbours, and parts a
  * vertex at which several fans of triangles meet. Where more than two meet in an edge, those are
- * glued that have the inside between them; of such a mesh up to a thousandth of its edges by
- * triangles is parted where it would have one side only. Triangles of three corners that another
+ * glued that have the inside between them; of such a mesh edges are parted, up to one for every
+ * thousand triangles, where it would have one side only. Triangles of three corners that another
  * one has too are dropped, and of several pieces all but the largest, if they have no more than
  * `share` of the triangles. The mesh has passed sm_mesh_check() and has no triangle that repeats a
  * vertex; `name` is for messages. The caller frees. O(triangles). Errors (SM_INPUT): a surface of

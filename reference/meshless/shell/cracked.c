@@ -109,7 +109,7 @@ static void take_samples(const RefCracked *cracked, long c, RefSamplesWork *take
     }
 }
 
-_Static_assert((int)REF_SAMPLES_PER_CELL < 64, "a bit each");
+_Static_assert((int)REF_SAMPLES_PER_CELL < 64, "a bit each, and one beyond");
 static uint64_t find_bearing(const RefSamples *samples)
 {
     uint64_t bears = 0;

@@ -279,9 +279,8 @@ static int gather(const double at[2][ALONG], double scale, RefSamplesWork *work)
     for (long n = 0; n < nodes->count + nodes->images; n++) {
         const double *node = nodes->position[n], reach = nodes->reach[n];
         if (nodes->cylinders && nodes->home[n] != home) continue;
-        const bool near[] = {node[0] - low[0] > -reach,
-                             node[0] - high[0]<reach, node[1] - low[1]> - reach,
-                             node[1] - high[1] < reach};
+        const bool near[] = {low[0] - node[0] < reach, node[0] - high[0] < reach,
+                             low[1] - node[1] < reach, node[1] - high[1] < reach};
         if (!(near[0] & near[1] & near[2] & near[3])) continue; /* one branch, seldom taken */
         if (count == work->room) { /* zeroed: lanes that are no samples stay so */
             long more = sm_room_for(count);

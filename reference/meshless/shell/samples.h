@@ -64,8 +64,8 @@ SmCode ref_samples_take(const RefQuadtree *tree, RefNodes *nodes, RefBasis basis
                         RefSamples *samples, SmError *error);
 void ref_samples_free(RefSamples *samples);
 
-/* Asks memory for the functions of a cell's quarters, for what works on the cell before meanwhile:
- * a shell's are more than a cache has. */
+/* Prefetches the functions of a cell's quarters, while the cell before is worked on: a shell's are
+ * more than a cache has. */
 void ref_samples_fetch_quarters(const RefSamples *samples);
 
 /* The same of one terminal cell, with covers as they are, which cracks cut. Where they leave a

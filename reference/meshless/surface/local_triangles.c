@@ -239,9 +239,9 @@ static void choose_sides(const Work *work, bool *settled)
     free(along);
 }
 
-/* Whether given normals do not say which side is which: one pair of neighbours in ten and more look
- * apart, and not as two sheets do, whose points lie behind each other. How far behind is taken by
- * both normals, so that what the surface bends by cancels. */
+/* Whether given normals do not say which side is which: over one pair of neighbours in ten look
+ * apart, and not as two sheets do, whose points all lie behind or all before each other. How far
+ * behind is taken by both normals, so that what the surface bends by cancels. */
 static bool are_at_odds(const Work *work)
 {
     double behind = 0, off = 0;
@@ -259,7 +259,7 @@ static bool are_at_odds(const Work *work)
             behind -= ahead;
             off += fabs(ahead);
         }
-    return 10 * apart > pairs && behind <= off / 2;
+    return 10 * apart > pairs && fabs(behind) <= off / 2;
 }
 
 /* Normals and planes. */

@@ -31,22 +31,25 @@ static int by_position(const void *a, const void *b)
     return 0;
 }
 
+#define BARE "'run --engine shell' takes points without"
+
 static SmCode check(long count, const double (*position)[3], const double (*normal)[3],
                     const char *name, SmError *error)
 {
     for (long p = 0; p < count; p++) {
         double length = sqrt(sm_dot(normal[p], normal[p])), size = 0;
         for (int d = 0; d < 3; d++) size = fmax(size, fabs(position[p][d]));
-        if (!(isfinite(position[p][0] + position[p][1] + position[p][2]) && size < 1e30 &&
-              isfinite(length)))
+        if (!(isfinite(position[p][0] + position[p][1] + position[p][2]) && size < 1e30))
             return sm_fail(error, SM_INPUT,
-                           "%s: point %ld has a coordinate that is no number, or beyond 1e30, or "
-                           "such a normal",
-                           name, p + 1);
+                           "%s: point %ld has a coordinate that is no number, or beyond 1e30", name,
+                           p + 1);
+        if (!isfinite(length))
+            return sm_fail(error, SM_INPUT, "%s: point %ld has a normal that is no number", name,
+                           p + 1);
         if (length > 0 && !(length > 0.5 && length < 1.5))
             return sm_fail(error, SM_INPUT,
-                           "%s: point %ld has a normal of length %g, not 1: columns 4 to 6 must be "
-                           "its normal, or of a shell may be missing",
+                           "%s: point %ld has a normal of length %g, not 1 (text: columns 4 to 6; "
+                           "PLY: nx ny nz); " BARE,
                            name, p + 1, length);
     }
     return SM_OK;
@@ -160,7 +163,7 @@ static bool take_line(const char *text, const char *path, long line, bool first,
                 bare ? "%s: line %ld is not x y z, nor x y z nx ny nz"
                 : found == 3
                     ? "%s: line %ld has three numbers: the points have no normals; give them "
-                      "as x y z nx ny nz"
+                      "as x y z nx ny nz; " BARE
                     : "%s: line %ld is not x y z nx ny nz",
                 path, line);
     return false;
@@ -235,8 +238,9 @@ SmCode ref_points_rows(const char *path, bool bare, long *count, double (**posit
     code =
         check(*count, (const double(*)[3]) * position, (const double(*)[3]) * normal, path, error);
     if (code == SM_OK && !bare && all_bare(*count, (const double(*)[3]) * normal))
-        code = sm_fail(error, SM_INPUT,
-                       "%s: the points have no normals; give each one's nx, ny and nz", path);
+        code =
+            sm_fail(error, SM_INPUT,
+                    "%s: the points have no normals; give each one's nx, ny and nz; " BARE, path);
     if (code != SM_OK) sm_free_all(*position, *normal);
     return code;
 }

@@ -33,7 +33,8 @@ SmCode ref_points_read(const char *path, RefPoints *points, SmError *error);
 
 /* All rows of such a file, a position and a normal each, for the caller to free. With `bare` lines
  * of text may have three numbers alone, and PLY files no normals: theirs are zero. Errors:
- * reading's, and ref_points_create()'s of numbers and normals. */
+ * reading's, and ref_points_create()'s of numbers and normals; SM_INPUT, without `bare`, where no
+ * point has a normal. */
 SmCode ref_points_rows(const char *path, bool bare, long *count, double (**position)[3],
                        double (**normal)[3], SmError *error);
 
