@@ -128,3 +128,10 @@ const char *const *bench_engine_choices(void)
     list_names(bench_engine_is_planned, BENCH_MOST_PLANNED, choices + 1);
     return choices;
 }
+
+const char *bench_engine_unplanned(const char *word)
+{
+    return bench_engine(word)->reference
+               ? "it has no w and epsilon; its Young's modulus is given (run --young)"
+               : NULL;
+}

@@ -23,12 +23,7 @@ typedef struct BenchChecker BenchChecker; /* measure/checker.h */
 typedef struct BenchRow BenchRow;         /* measure/row.h */
 typedef struct BenchModes BenchModes;     /* play/mode.h */
 
-enum {
-    BENCH_MOST_ENGINES = 16,
-    BENCH_MOST_PLANNED = 4,
-    BENCH_ENGINES_TEXT = 128,
-    BENCH_ENGINES_WORD = 12
-};
+enum { BENCH_MOST_ENGINES = 16, BENCH_MOST_PLANNED = 4, BENCH_ENGINES_TEXT = 128 };
 
 typedef struct {
     const SmEngineType *type[2]; /* one a precision, the default first; NULL: there is no other */
@@ -111,8 +106,10 @@ const char *bench_engines_that(bool (*are)(const BenchEngine *engine),
 bool bench_engine_is_planned(const BenchEngine *engine);
 
 /* Planned engine number i of those that a plan's word stands for, "both" or one's name; NULL behind
- * the last. And the words, NULL-terminated. */
+ * the last. And the words, NULL-terminated; and why another word is none, or NULL: it is no
+ * engine's. */
 const BenchEngine *bench_engine_planned(const char *engines, int i);
 const char *const *bench_engine_choices(void);
+const char *bench_engine_unplanned(const char *word);
 
 #endif

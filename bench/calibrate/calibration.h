@@ -17,7 +17,7 @@ enum { BENCH_CALIBRATION_VALUES = 64, BENCH_CALIBRATION_SPECIMENS = 4096 };
 /* What the members are is said in calibration.c. */
 typedef struct {
     char file[1024]; /* the scene's name or file as given; not stored */
-    char scene[64], engines[BENCH_ENGINES_WORD], build[BENCH_CAMPAIGN_BUILD];
+    char scene[64], engines[12], build[BENCH_CAMPAIGN_BUILD];
     int across, aspect; /* of the scene's beam */
     double thickness, h, density, poisson, damping;
     bool meshless;

@@ -176,10 +176,8 @@ static SmCode check_goals(const BenchExperiment *of, TimedBody *body, SmError *e
 static void time_sums(const BenchExperiment *of, TimedBody *body, int points)
 {
     bool naive = of->scene->params.summation == SM_SUM_NAIVE;
-    const BenchMeasureParams params = {.repeats = naive            ? 4
-                                                  : of->lab->quick ? 5
-                                                                   : 15,
-                                       .threads = 1};
+    int repeats = of->lab->quick ? 5 : 15;
+    const BenchMeasureParams params = {.repeats = naive ? 4 : repeats, .threads = 1};
     BenchRow row = {.particles = body->runner.particles, .valid = true};
     const char *summation = bench_summations[of->scene->params.summation];
     bench_time_steps(&(BenchTimed){body, restore, step}, &params, &row);

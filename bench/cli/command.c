@@ -4,8 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../engines.h"
-
 const char *const bench_papers[] = {"fastlsm", "octree", "meshless", NULL};
 
 void bench_command_machine(const BenchCommon *common, int argc, char **argv, BenchMachine *machine)
@@ -50,18 +48,6 @@ static SmCode perform_campaign(const BenchCommand *command, int argc, char **arg
     }
     bench_campaign_free(&campaign);
     return code;
-}
-
-void bench_take_engines(const struct argp_state *state, const char *text, void *member)
-{
-    static const BenchSetting word = {
-        .kind = BENCH_SET_TEXT, .size = BENCH_ENGINES_WORD, .choices_of = bench_engine_choices};
-    SmError error;
-    if (bench_setting_text(&word, text, member, &error) == SM_OK) return;
-    bench_usage(state, "--engine: %s%s", error.text,
-                bench_engine(text)->reference
-                    ? ": it has no w and epsilon; its Young's modulus is given (run --young)"
-                    : "");
 }
 
 int bench_command_run(const BenchCommand *command, int argc, char **argv)

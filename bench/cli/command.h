@@ -27,11 +27,6 @@ extern const char *const bench_papers[];
         BENCH_IN(record, member), BENCH_CHOICES(bench_format_names),                               \
             BENCH_OPTION("format", "FORMAT", place, "As %s (default: text)")                       \
     }
-
-/* Takes a plan's engines, a word of bench_engine_choices() in BENCH_ENGINES_WORD bytes; says of
- * those that have no w and epsilon that they have none. */
-void bench_take_engines(const struct argp_state *state, const char *text, void *member);
-
 /* The members of a setting; `more` goes on in the sentence. */
 #define BENCH_REPEATS_OPTION(record, member, most, more)                                           \
     BENCH_OPTION("repeats", "N", 2, "Samples of every time" more), BENCH_IN(record, member), 1,    \

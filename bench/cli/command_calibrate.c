@@ -26,7 +26,7 @@ static const BenchSetting settings[] = {
                    "A beam: its body's box, its cells and its time step are taken (default: beam)"),
      BENCH_IN(Options, plan.file), .offers = bench_scene_names},
     {BENCH_MEASURE("engine", "NAME", 1, "%s (default: both)"), BENCH_IN(Options, plan.engines),
-     .choices_of = bench_engine_choices, .take = bench_take_engines},
+     .choices_of = bench_engine_choices, .why_not = bench_engine_unplanned},
     {LIST("w", 0, 1,
           "Region half-widths in cells, which in a regular octree are its nodes' edges, 1 to "
           "31, FIRST:LAST[:STEP] or a list (default: 1:10)")},

@@ -25,7 +25,7 @@ static const BenchSetting settings[] = {
          "as 'run' does"),
      BENCH_IN(Options, plan.mesh)},
     {BENCH_MEASURE("engine", "NAME", 1, "%s (default: both)"), BENCH_IN(Options, plan.engines),
-     .choices_of = bench_engine_choices, .take = bench_take_engines},
+     .choices_of = bench_engine_choices, .why_not = bench_engine_unplanned},
     {BENCH_MEASURE(
          "w", "RANGE", 1,
          "Region half-widths, FIRST:LAST[:STEP] or a list (default: 1:8), in edges of each "

@@ -142,10 +142,12 @@ static SmCode take_choice(const BenchSetting *setting, const char *text, void *r
     const char *const *choice = bench_setting_choices(setting);
     int i = 0;
     while (choice[i] && strcmp(choice[i], text) != 0) i++;
-    if (!choice[i])
-        return sm_fail(error, SM_USAGE, "'%s' is not %s%s", text,
-                       bench_setting_wanted(setting, false, wanted),
-                       bench_suggest_among(text, choice, near));
+    if (!choice[i]) {
+        const char *why = setting->why_not ? setting->why_not(text) : NULL;
+        return sm_fail(error, SM_USAGE, "'%s' is not %s%s%s", text,
+                       bench_setting_wanted(setting, false, wanted), why ? ": " : "",
+                       why ? why : bench_suggest_among(text, choice, near));
+    }
     if (setting->kind == BENCH_SET_NAME || setting->kind == BENCH_SET_TEXT)
         return take_text(setting, choice[i], record, error);
     bench_setting_number(setting, setting->low + i, record);

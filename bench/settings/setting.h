@@ -35,22 +35,23 @@ typedef struct BenchSetting {
     BenchSettingKind kind;
     size_t offset, size; /* of the member; size: of a list's element */
     double low, high;
-    const char *const *choices;             /* NULL-terminated; NULL: any; */
-    const char *const *(*choices_of)(void); /* or those that are known at run time */
-    const struct BenchSetting *table;       /* group, list, given */
-    size_t count;                           /* list: offset of the int that takes how many */
-    bool needed;                            /* a choice that a file must make */
-    const char *option;                     /* long name on the command line; NULL: none */
-    int letter;                             /* its short name, or 0 */
-    const char *argument;                   /* its value's name; NULL: it takes none, and sets 1 */
-    int section;                            /* its place in --help */
-    const char *help;                       /* without a key and an option: a heading there */
-    unsigned who;                           /* of those who share a table, who has it (bits; 0:
-                                             * all); of a group: as whom it is read */
-    unsigned of;                            /* engines that alone have it: BENCH_OF_... */
-    bool measuring;                         /* says what to measure (BenchCommon.measuring) */
-    const char *const *(*offers)(void);     /* values that a shell completes (completion.h), where
-                                             * others are as good; NULL: the choices */
+    const char *const *choices;               /* NULL-terminated; NULL: any; */
+    const char *const *(*choices_of)(void);   /* or those that are known at run time */
+    const char *(*why_not)(const char *text); /* why a text is none of them; NULL: just so */
+    const struct BenchSetting *table;         /* group, list, given */
+    size_t count;                             /* list: offset of the int that takes how many */
+    bool needed;                              /* a choice that a file must make */
+    const char *option;                       /* long name on the command line; NULL: none */
+    int letter;                               /* its short name, or 0 */
+    const char *argument;               /* its value's name; NULL: it takes none, and sets 1 */
+    int section;                        /* its place in --help */
+    const char *help;                   /* without a key and an option: a heading there */
+    unsigned who;                       /* of those who share a table, who has it (bits; 0:
+                                         * all); of a group: as whom it is read */
+    unsigned of;                        /* engines that alone have it: BENCH_OF_... */
+    bool measuring;                     /* says what to measure (BenchCommon.measuring) */
+    const char *const *(*offers)(void); /* values that a shell completes (completion.h), where
+                                         * others are as good; NULL: the choices */
     void (*take)(const struct argp_state *state, const char *text,
                  void *member); /* the option's
                                  * value, where it is none of these kinds */

@@ -13,7 +13,6 @@
 #define BENCH_SWEEP_H
 
 #include "../campaign/campaign.h"
-#include "../engines.h"
 #include "point.h"
 
 enum { BENCH_PLAN_VALUES = 256, BENCH_PLAN_POINTS = BENCH_CAMPAIGN_POINTS };
@@ -24,7 +23,7 @@ typedef struct {
     char
         file[1024]; /* the scene's name or file as given; empty: that of a mesh alone. Not stored */
     char scene[64], mesh[1024];
-    char engines[BENCH_ENGINES_WORD], precision[12], width[12]; /* engines: "both", or the one */
+    char engines[12], precision[12], width[12]; /* engines: "both", or the one */
     char build[BENCH_CAMPAIGN_BUILD];
     unsigned long long scene_hash, mesh_hash;
     int repeats;

@@ -22,8 +22,8 @@ void ref_element_rows_free(RefElementRows *rows);
 
 /* Adds up the rows of the nodes that `touched` marks ([nodes]), over the `count` elements, of which
  * NULL are none, in their order: the same bits whichever rows are added up at once. Nodes may have
- * become more. O(nodes of all elements + nodes / 64 for each row + what is
- * added up). */
+ * become more. O(nodes of all elements + nodes / 64 for each row + what is added up).
+ */
 void ref_element_rows_sum(RefElementRows *rows, long nodes, const unsigned char *touched,
                           long count, const RefElement *const *element);
 
