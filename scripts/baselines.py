@@ -265,16 +265,18 @@ def store(rows, plan, machine, output, overwrite):
     import stored
     room = io.BytesIO()
     text = h5py.string_dtype("utf-8", 64)
-    with h5py.File(room, "w") as h5:
-        attributes(h5, {"kind": "shapebench baselines", "schema": 2, "checksum": stored.CHECKSUM_SAYS})
+    with h5py.File(room, "w", **stored.FORMAT) as h5:
+        attributes(h5, {"kind": "shapebench baselines", "schema": 2})
         attributes(h5.create_group("machine"), machine)
         attributes(h5.create_group("plan"), plan | {"comparable": COMPARABLE, "not_comparable": NOT_COMPARABLE})
         methods = h5.create_group("methods")
         for name, column in zip(STORED, COLUMNS):
             values = [each[column] for each in rows]
-            methods.create_dataset(name, data=values, dtype=text if isinstance(values[0], str) else float)
+            methods.create_dataset(name, data=values, dtype=text if isinstance(values[0], str) else float,
+                                   fletcher32=True)
+    stored.write_checksum(room)
     with draft.begun(output, overwrite) as file:
-        file.write(stored.with_checksum(room.getvalue()))
+        file.write(room.getvalue())
 
 
 def main(arguments):

@@ -70,7 +70,7 @@ def drawing():
 def opened(path):
     """The file for `with`, where it is whole (stored.py); with what is wrong in it the script ends."""
     try:
-        with stored.opened(path) as file:
+        with stored.opened(path, stored.print_remark) as file:
             yield file
     except stored.Unusable as error:
         fail(error, 3)

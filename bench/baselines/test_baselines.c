@@ -168,21 +168,6 @@ TEST(changed_files_are_refused)
     refuses_changed(&stored, changes, sizeof changes / sizeof *changes);
 }
 
-TEST(damage_is_found_by_the_checksum)
-{
-    const char *path = path_in("damaged.h5");
-    write_good(path);
-    FILE *file = fopen(path, "r+b");
-    assert_non_null(file);
-    fseek(file, -200, SEEK_END);
-    int byte = fgetc(file);
-    fseek(file, -200, SEEK_END);
-    fputc(byte ^ 1, file);
-    fclose(file);
-    refuses(&stored, path, "it is damaged");
-    unlink(path);
-}
-
 static void refuses_file(File *file, const char *words)
 {
     const char *path = path_in("wrong.h5");

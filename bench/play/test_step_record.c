@@ -259,18 +259,10 @@ TEST(a_lattice_has_its_cells_along_every_axis)
     H5Fclose(file);
 }
 
-/* Its checksum goes, or it would be refused before anything is compared. */
-static hid_t open_for_damage(void)
-{
-    hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
-    if (H5Aexists(file, BENCH_H5_CHECKSUM) > 0) H5Adelete(file, BENCH_H5_CHECKSUM);
-    return file;
-}
-
 /* Adds `amount` to one number of a dataset of vectors of every particle and record. */
 static void corrupt(const char *name, int record_number, double amount)
 {
-    hid_t file = open_for_damage();
+    hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
     hid_t dataset = H5Dopen2(file, name, H5P_DEFAULT), space = H5Dget_space(dataset);
     hsize_t point[] = {(hsize_t)record_number, 5, 1}, one = 1;
     H5Sselect_elements(space, H5S_SELECT_SET, 1, point);
@@ -288,7 +280,7 @@ static void corrupt(const char *name, int record_number, double amount)
 /* Adds `amount` to the first whole number in row `at` of a list. */
 static void corrupt_whole(const char *name, hsize_t at, int amount)
 {
-    hid_t file = open_for_damage();
+    hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
     hid_t dataset = H5Dopen2(file, name, H5P_DEFAULT), space = H5Dget_space(dataset);
     hsize_t one = 1, first[] = {at, 0};
     hid_t single = H5Screate_simple(1, &one, NULL);

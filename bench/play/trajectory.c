@@ -1,6 +1,5 @@
 #include "trajectory.h"
 
-#include <errno.h>
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -406,7 +405,7 @@ SmCode bench_trajectory_close(BenchTrajectory *trajectory, const char *hash, SmE
 void bench_trajectory_abandon(BenchTrajectory *trajectory)
 {
     if (!trajectory) return;
-    trajectory->h5.number = ECANCELED; /* nothing more is written */
+    trajectory->h5.failed = true; /* nothing more is written */
     bench_h5_close(&trajectory->h5);
     discard(trajectory);
     release(trajectory);

@@ -1,30 +1,26 @@
-/* checksum.h - the last line of a stored file: the CRC-32 of all bytes before it.
+/* checksum.h - the user block of a stored file: the CRC-32 of all bytes after it.
  *
- * HDF5 reads no further than its own end, so other programs do not see the line; one that writes to
- * the file cuts it off. It shows damage (a wrong disk, a cut-off copy), not intent. */
+ * HDF5 begins after the user block and leaves it as it is, so a file that another program has
+ * written to no longer fits its checksum. What HDF5 stores has checksums of its own (h5.h); this
+ * one covers the whole file and is compared before HDF5 opens it. */
 #ifndef BENCH_CHECKSUM_H
 #define BENCH_CHECKSUM_H
 
-#include <stddef.h>
+#include <stdio.h>
 
-enum { BENCH_CHECKSUM_LINE = 64 }; /* bytes */
+enum { BENCH_CHECKSUM_BLOCK = 512 }; /* bytes, HDF5's smallest user block */
 
 typedef enum {
-    BENCH_CHECKSUM_ABSENT, /* the file does not end in such a line */
-    BENCH_CHECKSUM_RIGHT,
-    BENCH_CHECKSUM_WRONG,
+    BENCH_CHECKSUM_HOLDS,
+    BENCH_CHECKSUM_DIFFERS, /* damaged, or written to by another program, or not shapebench's */
+    BENCH_CHECKSUM_OLD, /* HDF5 before its metadata had checksums: shapebench until November 2026 */
 } BenchChecksum;
 
-/* pread() and pwrite() of all bytes, also past signals. 0 or errno; EIO at the file's end: what is
- * beyond it stays as it is. */
-int bench_read_all(int file, void *bytes, size_t size, long long from);
-int bench_write_all(int file, const void *bytes, size_t size, long long to);
+/* Fills the user block of a file that HDF5 has closed. 0 or errno. Reads all of it: about a second
+ * a GB. */
+int bench_checksum_write(const char *path);
 
-/* Appends the line to a file open for reading and writing. 0 or errno. Reads all of it: about a
- * second a GB. */
-int bench_checksum_append(int file);
-
-/* Compares a file with its line. 0 or errno. */
-int bench_checksum_check(const char *path, BenchChecksum *found);
+/* Compares an open file with its user block. 0 or errno. */
+int bench_checksum_check(FILE *file, BenchChecksum *found);
 
 #endif

@@ -1,7 +1,9 @@
 /* h5.h - HDF5 with one failure state instead of a check at every call.
  *
  * After a call has failed the later ones do nothing, so a writer or reader checks once at its end.
- * HDF5 prints nothing itself; its deepest message is kept. */
+ * HDF5 prints nothing itself; its deepest message is kept. Files have the format of HDF5 1.10,
+ * whose metadata carry checksums, every dataset has Fletcher32, and the user block a checksum of
+ * the whole (checksum.h). */
 #ifndef BENCH_H5_H
 #define BENCH_H5_H
 
@@ -12,24 +14,22 @@
 #include "../../lib/error.h"
 #include "field.h"
 
-/* Attribute of every file that ends in its checksum (checksum.h). */
-#define BENCH_H5_CHECKSUM "checksum"
-
 typedef struct {
     hid_t file;
     bool failed;
-    int number;        /* errno of a write that failed (h5_driver.h), else 0 */
-    hsize_t size;      /* of a file that is loaded: its datasets hold no more; 0: not known */
-    hsize_t found;     /* bytes of datasets so far */
-    char message[256]; /* what failed */
+    int number;          /* errno of what failed, else 0 */
+    const char *created; /* path of a file that is written, else NULL */
+    hsize_t size;        /* of a file that is loaded: its datasets hold no more; 0: not known */
+    hsize_t found;       /* bytes of datasets so far */
+    char message[256];   /* what failed */
 } BenchH5;
 
-/* Creates (replacing an empty draft) or opens a file. After create `h5` must not move. */
+/* Creates (replacing an empty draft) or opens a file. The path of a created one must stay. */
 void bench_h5_create(BenchH5 *h5, const char *path);
 void bench_h5_open(BenchH5 *h5, const char *path);
 
-/* Closes the file and all that is open in it; true when everything since create went well. Twice
- * does no harm. */
+/* Closes the file and all that is open in it, and gives a created one its checksum; true when
+ * everything since create went well. Twice does no harm. */
 bool bench_h5_close(BenchH5 *h5);
 
 /* Marks `h5` as failed with this message, unless it has failed before. */
@@ -66,7 +66,7 @@ void bench_h5_columns(BenchH5 *h5, hid_t group, const BenchField *fields, int co
                       const void *records, size_t size, long number);
 
 /* Reading: wrong type, wrong size and absence are failures that name the thing, and so are datasets
- * of a file that is loaded that hold more than it does, or lie in another one. */
+ * that hold more than the file that is loaded. */
 hid_t bench_h5_find_group(BenchH5 *h5, hid_t parent, const char *name);
 hid_t bench_h5_find_dataset(BenchH5 *h5, hid_t parent, const char *name, int rank,
                             const hsize_t *size);
@@ -92,11 +92,10 @@ long bench_h5_records(BenchH5 *h5, hid_t group, const BenchField *fields, long m
 SmCode bench_h5_store(const char *path, void (*write)(BenchH5 *h5, void *record), void *record,
                       SmError *error);
 
-/* Has `read` read the file into `record`. First its checksum is compared (a file from before there
- * were any has none, and is read as it is), and then a child reads it, because damage can crash
- * HDF5 or have it take any memory. SM_INPUT, with the file and what is wrong: no such file, a
- * folder or pipe, not HDF5, cut off, damaged, or what `read` failed at; the caller then frees what
- * it has made so far. */
+/* Has `read` read the file into `record`. SM_INPUT, with the file and what is wrong: no such file,
+ * a folder or pipe, not HDF5, cut off, damaged, of a version without checksums, or what `read`
+ * failed at; the caller then frees what it has made so far. A file that another program has written
+ * to is read, with a remark on standard error. */
 SmCode bench_h5_load(const char *path, void (*read)(BenchH5 *h5, void *record), void *record,
                      SmError *error);
 

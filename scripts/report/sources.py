@@ -203,5 +203,5 @@ def read_file(path, file):
 
 def read(path):
     """The file as a Source; raises Unusable."""
-    with stored.opened(path) as file:
+    with stored.opened(path, stored.print_remark) as file:
         return read_file(path, file)

@@ -125,7 +125,6 @@ def _read(path: str, file: Any) -> Results:
         raise stored.Unusable(f"{path}: no file of shapebench's")
     if kind == "shapebench trajectory":
         raise stored.Unusable(f"{path}: a trajectory: open it with shapebench.results.Trajectory()")
-    values.pop("checksum", "")
     made = Results(path, kind, values.pop("schema"), values, {}, {})
     for name, node in file.items():
         if name in RECORDS:
@@ -141,7 +140,7 @@ def _read(path: str, file: Any) -> Results:
 
 
 def read(path: Path) -> Results:
-    """Reads a whole results file. InputError: it is not there, cut off, damaged (its checksum is compared), or none of
+    """Reads a whole results file. InputError: it is not there, cut off, damaged, or none of
     shapebench's. ImportError where h5py is missing."""
     name, stored = os.fspath(path), _stored()
     try:
