@@ -191,8 +191,7 @@ static void time_sums(const BenchExperiment *of, TimedBody *body, int points)
     double side = bench_structure_side(&of->body->voxels, w);
     if (row.busy) { /* there may be no undisturbed sample */
         of->curve->busy = of->curve->valid;
-        bench_curve_fail(of->curve, "w = %d, %s: others took %.0f%% of its processor", w, summation,
-                         row.lost_percent);
+        bench_curve_fail(of->curve, "w = %d, %s: %s", w, summation, row.reason);
     } else
         bench_curve_sample(of->curve, side, ns, row.repeats, BENCH_LOW, points);
     free(ns);

@@ -246,16 +246,15 @@ void bench_experiment_name(const BenchMeasure *measure, char name[BENCH_CURVE_NA
         name_curve(measure, name);
 }
 
-/* Of times that were taken from `start` on: are they of this program alone? The low end of them
- * stands a quarter of the time lost; that of matrices, whose samples are short, more. */
-static void check_busy(const BenchMeasure *measure, const BenchInstant *start, BenchCurve *curve)
+/* Of times that were taken since the watch's start: are they of this program alone? The low end of
+ * them stands a quarter of the time lost; that of matrices, whose samples are short, more. */
+static void check_busy(const BenchMeasure *measure, BenchWatch *watch, BenchCurve *curve)
 {
-    BenchInstant end = bench_instant_end(1);
-    double lost = bench_instant_lost(start, &end);
-    if (!kinds[measure->experiment].timed || lost <= 0.25) return;
+    char cause[BENCH_CAUSE_TEXT];
+    bench_watch_stop(watch);
+    if (!kinds[measure->experiment].timed || 4 * watch->lost <= watch->seconds) return;
     curve->busy |= curve->valid; /* or was found to be */
-    bench_curve_fail(curve, "others took %.0f%% of its processor (load average %.1f)", 100 * lost,
-                     bench_load_average());
+    bench_curve_fail(curve, "%s", bench_watch_cause(watch, cause));
 }
 
 static SmCode measure_scene(const BenchExperiment *of, SmError *error)
@@ -292,10 +291,11 @@ int bench_experiment(BenchLab *lab, const BenchMeasure *measure)
     SmError error;
     bool whole = measure->experiment == BENCH_TRY_SCENE;
     bench_curve_begin(&curve, kind->x_name, kind->y_name ? kind->y_name : measure->field);
-    BenchInstant start = bench_instant_start(1);
+    BenchWatch watch = bench_watch(1);
+    bench_watch_start(&watch);
     if (takes(kind, "scene") && !whole ? measure_body(kind, of, &error) : kind->run(&of, &error))
         bench_curve_fail(&curve, "%.180s", error.text);
-    check_busy(measure, &start, &curve);
+    check_busy(measure, &watch, &curve);
     strcpy(curve.name, name);
     for (int p = 0; p < curve.points; p++)
         if (!isfinite(curve.y[p])) bench_curve_fail(&curve, "point %d is not a number", p + 1);

@@ -140,12 +140,7 @@ static bool is_busy(const BenchRow *row, const char *name, const BenchField *fie
     bool time = field ? field->timed != NULL : strcmp(name, "growth_percent") != 0;
     if (!time || !(frames ? bench_row_frames_busy(row) : row->busy)) return false;
     curve->busy = true;
-    if (frames)
-        bench_curve_fail(curve, "others took its processors from its frames (load average %.1f)",
-                         row->load);
-    else
-        bench_curve_fail(curve, "others took %.0f%% of its processors (load average %.1f)",
-                         row->lost_percent, row->load);
+    bench_curve_fail(curve, "%s%s", frames ? "its frames: " : "", row->reason);
     return true;
 }
 

@@ -2,12 +2,14 @@
 #include "machine_info.h"
 
 #include <dlfcn.h>
+#include <math.h>
 #include <omp.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "../../lib/isa.h"
 #include "../../lib/printable.h"
+#include "../../lib/system/cores.h"
 #include "../settings/command_line.h"
 
 /* What the machine's record does not hold. */
@@ -31,11 +33,6 @@ static void find_tools(Tools *tools)
     if (there) sm_append(tools->valgrind, sizeof tools->valgrind, "%s", line + strlen(before));
 }
 
-static int processors(void)
-{
-    return (int)sysconf(_SC_NPROCESSORS_ONLN);
-}
-
 static void print_caches(const BenchMachine *machine)
 {
     const long bytes[] = {machine->l1_bytes, machine->l2_bytes, machine->l3_bytes};
@@ -51,7 +48,10 @@ static void print_text(const BenchMachine *machine, const Tools *tools)
 {
     printf("This machine\n  processor     %s (%s)\n", machine->cpu, machine->cpu_model);
     print_caches(machine);
-    printf("  cores         %d for this process, of %d\n", machine->cores, processors());
+    double quota = sm_quota("").cores;
+    printf("  cores         %d for this process: affinity %d of %ld, container's quota ",
+           machine->cores, omp_get_num_procs(), sysconf(_SC_NPROCESSORS_ONLN));
+    printf(isinf(quota) ? "none\n" : "%.3g\n", quota);
     printf("  instructions  %s\n", machine->cpu_instructions);
     printf("  kernel        %s, governor %s\n", machine->kernel, machine->governor);
     printf("  counters      %s\n", machine->counters);
@@ -78,10 +78,12 @@ static void print_json(const BenchMachine *machine, const Tools *tools)
         json_array_append_new(isas, json_pack("{s:s, s:b, s:b}", "name", sm_isa_name(isa), "there",
                                               (int)sm_isa_there(isa), "in_use", isa == sm_isa()));
     bench_json_write(stdout,
-                     json_pack("{s:o, s:o, s:i, s:i, s:o, s:o}", "environment",
+                     json_pack("{s:o, s:o, s:i, s:i, s:o, s:i, s:o, s:o}", "environment",
                                bench_json_machine(machine), "isas", isas, "processors",
-                               processors(), "openmp", _OPENMP, "openmp_library",
-                               text_json(tools->openmp), "valgrind", text_json(tools->valgrind)));
+                               (int)sysconf(_SC_NPROCESSORS_ONLN), "affinity", omp_get_num_procs(),
+                               "quota", bench_json_number(sm_quota("").cores), "openmp", _OPENMP,
+                               "openmp_library", text_json(tools->openmp), "valgrind",
+                               text_json(tools->valgrind)));
 }
 
 void bench_machine_info(const BenchMachine *machine, bool json)

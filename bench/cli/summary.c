@@ -126,13 +126,13 @@ bool bench_summary_print(BenchPlayback *play, const BenchOutcome *outcome)
            runner->scene->params.h);
     const BenchMean *step = &outcome->step;
     double seconds = step->seconds / (double)step->count;
+    char cause[BENCH_CAUSE_TEXT];
     if (!valid)
         printf("INVALID\n");
     else if (!outcome->steps)
         printf("nothing timed\n");
     else if (bench_watch_busy(&step->watch))
-        printf("BUSY: other programs took %.0f%% of its processors (load average %.1f)\n",
-               bench_watch_lost(&step->watch), bench_load_average());
+        printf("BUSY: %s\n", bench_watch_cause(&step->watch, cause));
     else
         printf("%.4g ms a step, %.4g ns per particle and step\n", 1e3 * seconds,
                1e9 * seconds / (double)particles);

@@ -17,9 +17,8 @@ typedef struct {
     int w, threads;
     long items; /* in a sample's unit of work: particles, matrices, ... */
     bool valid;
-    bool busy; /* others took the processors (disturbance.h): its times are not to be told */
-    double lost_percent;  /* and so much of them */
-    char reason[192];     /* why not valid, or busy */
+    bool busy;        /* others took the processors (disturbance.h): its times are not to be told */
+    char reason[192]; /* why not valid, or busy */
     double ns, low, high; /* an item (and step): median and quartiles over the repeats */
     double bound_ns;      /* no implementation is faster on this machine; machine_peak.h */
     char bound[8];        /* what sets it */

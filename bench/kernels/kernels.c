@@ -210,7 +210,7 @@ static void find_busy(const BenchTrial *trial, BenchKernelRow *row)
 {
     if (!bench_watch_busy(&trial->watch)) return;
     row->busy = true;
-    row->lost_percent = bench_watch_lost(&trial->watch);
+    bench_watch_cause(&trial->watch, row->reason);
 }
 
 /* Of an item. */
@@ -311,10 +311,6 @@ static void report(Run *run, BenchJob *job, const BenchJob *jobs, int count)
         if (has_base(job->kernel, &kernels[k])) compare_own(job, run->own_ns[k], row);
     for (int j = 0; j < count && !kind->own; j++)
         if (has_base(job->kernel, jobs[j].kernel)) compare_samples(job, &jobs[j], row);
-    if (row->busy)
-        snprintf(row->reason, sizeof row->reason,
-                 "other programs took %.0f%% of its processors (load average %.1f)",
-                 row->lost_percent, bench_load_average());
 }
 
 /* ---- sets */

@@ -49,7 +49,7 @@ static void report(BenchJob *job, BenchKernelRow *row)
     double particles = (double)found->particles, scale = 1e6 / particles;
     int side = (int)cbrt(particles / (double)found->instances) + 1;
     row->busy = found->busy;
-    row->lost_percent = found->lost_percent;
+    if (found->busy) snprintf(row->reason, sizeof row->reason, "%s", found->reason);
     row->ns = found->ns_per_particle_step;
     row->low = scale * found->total_low_ms;
     row->high = scale * found->total_high_ms;

@@ -133,7 +133,7 @@ static void summarise(const Times *times, BenchChangeRow *row)
 
 /* Leaves out the times of a busy machine: of more than a quarter of the frames a part was disturbed
  * in every round. */
-static void find_busy(Times *times, BenchChangeRow *row)
+static void find_busy(Times *times, char *cause, BenchChangeRow *row)
 {
     for (long f = 0; f < times->frames; f++) {
         times->watch.good = true;
@@ -141,6 +141,7 @@ static void find_busy(Times *times, BenchChangeRow *row)
         bench_watch_count(&times->watch);
     }
     if (!bench_watch_busy(&times->watch)) return;
+    if (cause) bench_watch_cause(&times->watch, cause);
     row->first_ms = row->last_ms = row->change_ms = row->change_most_ms = NAN;
     row->follow_ms = row->surface_ms = NAN;
 }
@@ -207,7 +208,7 @@ SmCode bench_change_row_measure(const BenchScene *scene, const BenchBody *body,
     }
     if (!code) {
         summarise(&times, row);
-        find_busy(&times, row);
+        find_busy(&times, params->cause, row);
         note_end(play, row);
         row->time = times.least;
         times.least = NULL;

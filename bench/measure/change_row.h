@@ -13,6 +13,7 @@ typedef struct {
                  * there are any */
     unsigned long seed;
     BenchProgress *progress; /* or NULL */
+    char *cause;             /* or NULL: says of a busy machine what took the processors */
 } BenchChangeRowParams;
 
 /* `play` is left as the last round ends; the caller frees it, and row->time. Errors are those of

@@ -6,6 +6,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "../../lib/printable.h"
 #include "../../lib/system/clock.h"
 
 /* Seconds for which all threads of this process have waited for a processor. */
@@ -37,28 +38,6 @@ static double used(int threads)
     return threads == 1 ? processor_time() : -waited();
 }
 
-BenchInstant bench_instant_start(int threads)
-{
-    BenchInstant now = {.threads = threads, .used = used(threads)};
-    now.wall = sm_now();
-    return now;
-}
-
-BenchInstant bench_instant_end(int threads)
-{
-    BenchInstant now = {.threads = threads, .wall = sm_now()};
-    now.used = used(threads);
-    return now;
-}
-
-double bench_instant_lost(const BenchInstant *from, const BenchInstant *to)
-{
-    double wall = to->wall - from->wall, used = to->used - from->used;
-    if (!(wall > 0)) return 0;
-    double lost = from->threads == 1 ? 1 - used / wall : -used / (wall * fmax(from->threads, 1));
-    return fmin(fmax(lost, 0), 1);
-}
-
 double bench_load_average(void)
 {
     double load[1] = {NAN};
@@ -68,7 +47,8 @@ double bench_load_average(void)
     return load[0];
 }
 
-double bench_stolen_seconds(void)
+/* Seconds for which the host of this virtual machine ran others, of all processors together. */
+static double stolen_seconds(void)
 {
     double ticks = 0;
     FILE *file = fopen("/proc/stat", "re");
@@ -79,7 +59,8 @@ double bench_stolen_seconds(void)
 
 BenchWatch bench_watch(int threads)
 {
-    return (BenchWatch){.threads = threads, .began = sm_now(), .stolen = bench_stolen_seconds()};
+    return (BenchWatch){
+        .threads = threads, .began = sm_now(), .stolen = stolen_seconds(), .quota = sm_quota("")};
 }
 
 /* Counters are read outside of the times, as of all programs: of one thread also outside of its
@@ -87,13 +68,11 @@ BenchWatch bench_watch(int threads)
  * has waited is work that they would count. */
 void bench_watch_start(BenchWatch *watch)
 {
-    BenchInstant *start = &watch->start;
     bool alone = watch->threads == 1;
-    *start = (BenchInstant){.threads = watch->threads};
     if (watch->counters && alone) bench_counters_read(watch->counters, &watch->first);
-    start->used = used(watch->threads);
+    watch->used = used(watch->threads);
     if (watch->counters && !alone) bench_counters_read(watch->counters, &watch->first);
-    start->wall = sm_now();
+    watch->wall = sm_now();
 }
 
 static void count(BenchWatch *watch)
@@ -104,17 +83,21 @@ static void count(BenchWatch *watch)
     bench_counts_add(&watch->counts, &watch->first, &now);
 }
 
+/* A sample's seconds lost: those of processor time that its threads could have had and did not get;
+ * 0 of a team where the kernel does not count it. */
 double bench_watch_stop(BenchWatch *watch)
 {
-    BenchInstant end = {.threads = watch->threads, .wall = sm_now()};
+    const double limit = 0.02; /* of the time: interrupts take less */
+    double seconds = sm_now() - watch->wall;
     bool alone = watch->threads == 1;
     if (watch->counters && !alone) count(watch);
-    end.used = used(watch->threads);
+    double got = used(watch->threads) - watch->used;
     if (watch->counters && alone) count(watch);
-    double seconds = end.wall - watch->start.wall, lost = bench_instant_lost(&watch->start, &end);
-    watch->good = lost <= BENCH_LOST_LIMIT;
+    double lost = alone ? seconds - got : -got / fmax(watch->threads, 1);
+    lost = fmin(fmax(lost, 0), seconds);
+    watch->good = lost <= limit * seconds;
     watch->seconds += seconds;
-    watch->lost += lost * seconds;
+    watch->lost += lost;
     return seconds;
 }
 
@@ -136,7 +119,7 @@ bool bench_watch_again(BenchWatch *watch)
 /* Seconds that the host took since the watch began. */
 static double taken(const BenchWatch *watch)
 {
-    return bench_stolen_seconds() - watch->stolen;
+    return stolen_seconds() - watch->stolen;
 }
 
 bool bench_watch_busy(const BenchWatch *watch)
@@ -148,6 +131,23 @@ double bench_watch_lost(const BenchWatch *watch)
 {
     double share = watch->seconds > 0 ? watch->lost / watch->seconds : 0;
     return 100 * fmin(1, share + taken(watch) / fmax(sm_now() - watch->began, 1e-9));
+}
+
+const char *bench_watch_cause(const BenchWatch *watch, char text[BENCH_CAUSE_TEXT])
+{
+    double lost = bench_watch_lost(watch), time = (sm_now() - watch->began) * watch->threads;
+    double stopped = 100 * (sm_quota("").throttled - watch->quota.throttled) / fmax(time, 1e-9);
+    double throttled = isinf(watch->quota.cores) ? 0 : fmin(fmax(stopped, 0), lost);
+    text[0] = '\0';
+    if (throttled >= 5)
+        sm_append(text, BENCH_CAUSE_TEXT,
+                  "throttled: the container's quota of %.3g cores took %.0f%% of the time",
+                  watch->quota.cores, throttled);
+    if (lost - throttled >= 5 || (!*text && bench_watch_busy(watch)))
+        sm_append(text, BENCH_CAUSE_TEXT,
+                  "%sother programs took %.0f%% of the time (load average %.1f)", *text ? "; " : "",
+                  lost - throttled, bench_load_average());
+    return text;
 }
 
 void bench_mean_add(BenchMean *mean, double seconds, long count)

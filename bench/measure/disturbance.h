@@ -1,4 +1,4 @@
-/* disturbance.h - how much of a wall-clock time other programs took.
+/* disturbance.h - how much of a wall-clock time other programs and the container's quota took.
  *
  * One thread's processor time says so of itself. A team's does not, because its threads sleep where
  * others work: of them the kernel says how long they waited for a processor (schedstat). What
@@ -6,24 +6,8 @@
 #ifndef BENCH_DISTURBANCE_H
 #define BENCH_DISTURBANCE_H
 
+#include "../../lib/system/cores.h"
 #include "../system/counters.h"
-
-typedef struct {
-    double wall, used; /* s: by the wall clock; processor time of the calling thread, or of a team's
-                        * threads together the time for which they did not wait for one */
-    int threads;
-} BenchInstant;
-
-/* More than a disturbed sample may have lost: what interrupts take is less. */
-#define BENCH_LOST_LIMIT 0.02
-
-/* The wall clock is read last at the start and first at the end: what this costs is not between. */
-BenchInstant bench_instant_start(int threads);
-BenchInstant bench_instant_end(int threads);
-
-/* Share of the processor time that the threads could have had which they did not get, 0 to 1; 0 of
- * a team where the kernel does not count it. */
-double bench_instant_lost(const BenchInstant *from, const BenchInstant *to);
 
 /* A time that is sampled, again where others disturbed it: which samples count, and whether the
  * time can be told at all. One rule for all that is timed:
@@ -41,7 +25,9 @@ typedef struct {
     bool good;            /* the last try: the caller may judge it otherwise */
     double seconds, lost; /* wall clock, of all tries; what others took of it */
     double began, stolen; /* when the watch began, and what the host had taken until then */
-    BenchInstant start;
+    SmQuota quota;        /* then */
+    double wall, used;    /* s at the try's start: by the wall clock; processor time of the calling
+                           * thread, or of a team's threads together minus the time that they waited */
     const BenchCounters *counters; /* read around every try; NULL, as at first: none are */
     BenchCounts first, counts;     /* at its start; of the last try */
 } BenchWatch;
@@ -63,8 +49,13 @@ void bench_watch_count(BenchWatch *watch);
  * processors. */
 bool bench_watch_busy(const BenchWatch *watch);
 
-/* What others took, in percent. */
+/* Percent of the time that other programs and the container's quota took. */
 double bench_watch_lost(const BenchWatch *watch);
+
+/* Says which of the two took how much; "" where each took less than 5% and the watch is not busy.
+ * Returns `text`. */
+enum { BENCH_CAUSE_TEXT = 160 };
+const char *bench_watch_cause(const BenchWatch *watch, char text[BENCH_CAUSE_TEXT]);
 
 /* The mean of what nobody disturbed, where nothing can be done again. */
 typedef struct {
@@ -85,8 +76,4 @@ int bench_watch_steps(double seconds, int most);
 
 /* The load average of the last minute: programs that run or wait to; NaN where it is not known. */
 double bench_load_average(void);
-
-/* Seconds for which the host of this virtual machine ran others, of all processors together. */
-double bench_stolen_seconds(void);
-
 #endif

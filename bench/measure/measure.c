@@ -157,7 +157,8 @@ static SmCode play_changes(const BenchScene *scene, const BenchBody *body, const
 {
     const BenchChecker *checker = bench_engine(type->name)->checker;
     enum { ROUNDS = 3 };
-    BenchChangeRowParams frames = {params->threads, ROUNDS, params->seed, params->progress};
+    BenchChangeRowParams frames = {params->threads, ROUNDS, params->seed, params->progress,
+                                   row->valid && !row->busy ? row->reason : NULL};
     BenchPlayback play;
     SmCode code = bench_change_row_measure(scene, body, type, &frames, &row->change, &play, error);
     if (code) return code;

@@ -158,6 +158,7 @@ static void find_busy(const BenchWatch *watch, BenchRow *row)
     row->lost_percent = bench_watch_lost(watch);
     row->load = bench_load_average();
     row->busy = bench_watch_busy(watch);
+    if (row->valid) bench_watch_cause(watch, row->reason);
     if (!row->busy) return;
     row->total_ms = row->total_low_ms = row->total_high_ms = NAN;
     row->fps = row->ns_per_particle_step = row->instruments_percent = NAN;

@@ -57,6 +57,21 @@ TEST(more_than_a_quarter_of_disturbed_samples_is_busy)
     assert_true(bench_watch_busy(&watch));
 }
 
+TEST(throttling_is_told_apart_from_other_programs)
+{
+    char text[BENCH_CAUSE_TEXT];
+    BenchWatch watch = bench_watch(1);
+    watch.began = -1e9; /* whatever the host takes here */
+    assert_string_equal(bench_watch_cause(&watch, text), "");
+    watch.seconds = 1;
+    watch.lost = 0.5;
+    watch.quota.cores = INFINITY;
+    assert_int_equal(strncmp(bench_watch_cause(&watch, text), "other programs took 50% of", 26), 0);
+    watch.quota = (SmQuota){0.5, -INFINITY};
+    assert_string_equal(bench_watch_cause(&watch, text),
+                        "throttled: the container's quota of 0.5 cores took 50% of the time");
+}
+
 TEST(a_mean_leaves_out_what_was_disturbed)
 {
     BenchMean mean = {.watch = bench_watch(1)};

@@ -74,8 +74,8 @@ TEST(only_what_is_to_change_must)
         BenchRow row;
         snprintf(of, sizeof of, "%s frames = 4; steps_per_frame = 2; %s", text, scenes[i].more);
         assert_int_equal(measure_text(of, type, &row), SM_OK);
-        assert_string_equal(row.reason, scenes[i].reason);
-        assert_true(row.valid == !row.reason[0] && row.change.frames == 4);
+        if (!row.valid) assert_string_equal(row.reason, scenes[i].reason);
+        assert_true(row.valid == !scenes[i].reason[0] && row.change.frames == 4);
         assert_int_equal(row.change.changed, 0);
         bench_row_free(&row);
     }

@@ -7,6 +7,7 @@
 
 #include "../../lib/isa.h"
 #include "../../lib/printable.h"
+#include "../../lib/system/cores.h"
 #include "../../lib/system/team.h"
 #include "../system/suggest.h"
 #include "provenance.h"
@@ -273,7 +274,7 @@ static const BenchSetting common_settings[] = {
     {.help = "Common options:", .section = 90, .who = BENCH_TAKES_ALL},
     {BENCH_OPTION("quiet", NULL, 90, "No progress and no remarks on standard error"),
      BENCH_IN(BenchCommon, quiet), .who = BENCH_TAKES_QUIET},
-    {BENCH_OPTION("threads", "N", 90, "Threads; 0: all cores (default: 1)"),
+    {BENCH_OPTION("threads", "N", 90, "Threads; 0: all cores that it may use (default: 1)"),
      BENCH_IN(BenchCommon, threads), 0, SM_MOST_THREADS, .who = BENCH_TAKES_THREADS},
     {BENCH_OPTION("isa", "NAME", 90,
                   "Instruction set of the engines: sse2, avx2, avx512, as SHAPEBENCH_ISA (default: "
@@ -318,6 +319,6 @@ void bench_options_parse(const BenchCommandLine *line, int argc, char **argv, vo
         exit(SM_USAGE);
     }
     if (!common->isas.count) common->isas.name[common->isas.count++] = sm_isa_name(sm_isa());
-    if (!common->threads) common->threads = sm_team(omp_get_num_procs());
+    if (!common->threads) common->threads = sm_cores("");
     set_threads(common->threads);
 }

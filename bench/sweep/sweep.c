@@ -250,7 +250,6 @@ static BenchScene make_scene(const Sweeper *sweeper, const char *engine, double 
 static void keep_row(const BenchRow *row, BenchPoint *point)
 {
     point->valid = row->valid;
-    snprintf(point->reason, sizeof point->reason, "%s", row->reason);
     point->particles = row->particles;
     point->regions = row->regions;
     point->bytes = row->bytes;
@@ -258,11 +257,10 @@ static void keep_row(const BenchRow *row, BenchPoint *point)
     point->most_summation = row->most_summation;
     point->parts = row->parts;
     point->goal_error = row->goal_error;
-    if (row->valid && row->busy)
-        snprintf(point->reason, sizeof point->reason,
-                 "others took %.0f%% of its processors (load average %.1f)", row->lost_percent,
-                 row->load);
-    if (!bench_row_timed(row)) return; /* no times of what is not right, or was disturbed */
+    if (!bench_row_timed(row)) { /* no times of what is not right, or was disturbed */
+        snprintf(point->reason, sizeof point->reason, "%s", row->reason);
+        return;
+    }
     point->total_ms = row->total_ms;
     point->total_low_ms = row->total_low_ms;
     point->total_high_ms = row->total_high_ms;

@@ -1,11 +1,9 @@
-#define _GNU_SOURCE
 #include "machine.h"
 
 #include <assimp/version.h>
 #include <gsl/gsl_version.h>
 #include <jansson.h>
 #include <libconfig.h>
-#include <sched.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,6 +13,7 @@
 
 #include "../../lib/isa.h"
 #include "../../lib/printable.h"
+#include "../../lib/system/cores.h"
 #include "counters.h"
 #include "provenance.h"
 #include "quote.h"
@@ -203,11 +202,7 @@ static void read_system(BenchMachine *machine)
     else
         snprintf(machine->kernel, sizeof machine->kernel, "unknown");
     bench_machine_stamp(machine->hostname, machine->utc);
-    cpu_set_t set;
-    if (sched_getaffinity(0, sizeof set, &set) == 0)
-        machine->cores = CPU_COUNT(&set);
-    else
-        machine->cores = (int)sysconf(_SC_NPROCESSORS_ONLN);
+    machine->cores = sm_cores("");
     read_line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", sizeof machine->governor,
               machine->governor);
 }

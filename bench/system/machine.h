@@ -14,7 +14,7 @@ typedef struct {
     char cpu_model[96];         /* what is behind that name: vendor, family, model, stepping */
     char cpu_instructions[256]; /* sets that compilers use, of those that the kernel lists */
     long l1_bytes, l2_bytes, l3_bytes; /* data caches of processor 0; L3 shared by several */
-    int cores;                         /* processors that this process may run on */
+    int cores;                         /* that this process may use (lib/system/cores.h) */
     int threads;                       /* used */
     char isa[16];                      /* instruction set of the kernels: lib/isa.h */
     char counters[160]; /* of the processor that can be read, or "none: ..." (counters.h) */

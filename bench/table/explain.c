@@ -18,17 +18,13 @@ void bench_change_left(FILE *file, const char *before, long left)
 
 /* ---- one line a row */
 
-/* What others took, where it is worth a word. */
+/* Prints processor time lost to other programs and the container's quota, from 5%. */
 static void print_lost(FILE *file, const BenchRow *row, const char *before)
 {
     if (row->busy)
-        fprintf(file,
-                "%sBUSY: other programs took %.0f%% of its processors (load average %.1f): measure "
-                "again when they are done",
-                before, row->lost_percent, row->load);
-    else if (row->lost_percent >= 5)
-        fprintf(file, "%sother programs took %.0f%% of the time, which is not counted", before,
-                row->lost_percent);
+        fprintf(file, "%sBUSY: %s: measure again on free processors", before, row->reason);
+    else if (row->reason[0])
+        fprintf(file, "%s%s, which is not counted", before, row->reason);
 }
 
 /* At how many things was looked: those that `found` names. */
@@ -147,7 +143,7 @@ static void print_check(FILE *file, const BenchRow *row)
         fprintf(file, ";\n    %s\n", row->found);
         return;
     }
-    if (row->lost_percent >= 5) fputs("; ", file);
+    if (row->reason[0]) fputs("; ", file);
     fprintf(file, "%s;\n    quartiles %.4g to %.4g ms, %d repeats of %d step%s; ", row->found,
             row->total_low_ms, row->total_high_ms, row->repeats, row->steps,
             row->steps == 1 ? "" : "s");

@@ -13,6 +13,7 @@
 #include "../box.h"
 #include "../engine/boundary.h"
 #include "../isa.h"
+#include "../system/cores.h"
 #include "../system/team.h"
 #include "inner.h"
 
@@ -379,6 +380,7 @@ int sb_body_create(const sb_voxels *voxels, const sb_mesh *surface, const sb_bod
     if (!code) code = check_sizes(&p, &voxels->voxels, error);
     if (!code) code = take_own(&p, voxels->voxels.cell, surface, &octree, &meshless, error);
     if (code) return code;
+    if (!p.threads) p.threads = (int)fmin(sm_team(0), sm_cores(""));
     const SmEngineType *type = engines[p.engine].type[p.precision];
     SmEngineParams inner = engine_params(&p, type, &octree, &meshless);
     sb_body *made = sm_alloc(1, sizeof *made);

@@ -311,7 +311,7 @@ typedef struct {
     int engine;    /* SB_FASTLSM, SB_OCTREE, SB_BRUTE, SB_MESHLESS, SB_THIN_SHELL */
     int precision; /* SB_SINGLE (twice as fast) or SB_DOUBLE */
     int w;         /* half-width of FastLSM's regions in cells, 1 to 31: larger is stiffer */
-    int threads;   /* 0: OpenMP's number */
+    int threads;   /* 0: OpenMP's number, at most the cores of affinity and container's quota */
     double h;      /* time step, s */
     double gravity[3];
     double damping;      /* of regions' motion relative to rigid, 0 to 1 (fastlsm eq. 14) */
@@ -335,7 +335,7 @@ typedef struct {
     const sb_shell_params *shell;       /* SB_THIN_SHELL; NULL: the defaults */
 } sb_body_params;
 
-/* FastLSM in single precision, w 2, h 0.01 s, no gravity, one instance, all cores. */
+/* FastLSM in single precision, w 2, h 0.01 s, no gravity, one instance, threads 0. */
 void sb_body_params_init(sb_body_params *params, size_t size);
 void sb_octree_params_init(sb_octree_params *params, size_t size);
 void sb_meshless_params_init(sb_meshless_params *params, size_t size);

@@ -3,6 +3,7 @@
  * Every parallel region names its number by sm_team(), so that one number holds everywhere: that
  * of the engine it belongs to (SmEngineParams.threads), else OpenMP's of the calling thread
  * (omp_set_num_threads(), OMP_NUM_THREADS, or all cores), which the program sets to its --threads.
+ * system/cores.h knows a container's quota, which OpenMP does not.
  */
 #ifndef SM_TEAM_H
 #define SM_TEAM_H
@@ -10,6 +11,11 @@
 #ifdef _OPENMP
 #include <omp.h>
 #else /* one thread */
+static inline int omp_get_num_procs(void)
+{
+    return 1;
+}
+
 static inline int omp_get_max_threads(void)
 {
     return 1;

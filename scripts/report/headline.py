@@ -20,7 +20,7 @@ def validity(rows):
     yield (f"{len(rows)} row{' was' if len(rows) == 1 else 's were'} measured; each was checked on the very scene timed: "
            + ("all are VALID." if not bad else f"{len(bad)} are INVALID and have no times: {', '.join(bad)}."))
     if busy:
-        yield f"Other programs left no undisturbed time to {', '.join(busy)}: they are BUSY."
+        yield f"Other programs or the container's quota left no undisturbed time to {', '.join(busy)}: they are BUSY."
 
 
 def gains(rows):

@@ -142,10 +142,12 @@ def where(point, i):
 
 
 def check(row):
-    """A valid row without a time was left none by other programs."""
+    """A valid row without a time was left none by other programs or the container's quota."""
     if not row["valid"]:
         return "INVALID: " + row["reason"]
-    return "VALID" if row["total_ms"] == row["total_ms"] else "BUSY: other programs took the processors"
+    if row["total_ms"] == row["total_ms"]:
+        return "VALID"
+    return "BUSY: " + (row["reason"] or "other programs took the processors")
 
 
 def is_shell(row):

@@ -179,10 +179,10 @@ class Report(unittest.TestCase):
     def test_a_busy_row_has_no_times(self):
         def disturb(file):
             row = file["rows/000"].attrs
-            row["busy"], row["total_ms"] = 1, float("nan")
+            row["busy"], row["reason"], row["total_ms"] = 1, b"throttled: quota of 0.5 cores", float("nan")
 
         text = self.page(self.copy("busy.h5", disturb)).text
-        self.assertIn("BUSY: other programs took the processors", text)
+        self.assertIn("BUSY: throttled: quota of 0.5 cores", text)
         self.assertIn("left no undisturbed time to", text)
 
     def test_the_headline_is_made_of_the_rows(self):

@@ -201,7 +201,8 @@ class Body(Made):
         engine             "fastlsm"; "octree", and in double precision "brute", "meshless", "shell"
         precision          "single" (twice as fast); "double"
         w                  2; half-width of FastLSM's regions in cells, 1 to 31: larger is stiffer
-        threads            0: OpenMP's number; any number gives the same bits
+        threads            0: OpenMP's number, at most the cores of affinity and container's quota; any number gives
+                           the same bits
         h                  0.01; time step, s
         gravity            (0, 0, 0)
         damping            0; of regions' motion relative to rigid, 0 to 1 (fastlsm eq. 14)
