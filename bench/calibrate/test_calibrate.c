@@ -301,7 +301,7 @@ TEST(mistakes_are_one_line)
         {"calibrate whole.h5 --w 3", 2, "whole.h5 alone is shown as it is"},
         {"calibrate whole.h5 -o x.h5", 2, "whole.h5 alone is shown as it is"},
         {"calibrate noise.h5", 3, "noise.h5: not an HDF5 file"},
-        {"calibrate no.h5", 3, "cannot read no.h5: No such file"},
+        {"calibrate no.h5", 3, "no.h5: no such file"},
         {"sweep whole.h5", 3, "whole.h5"},
         {SMALL " -o noise.h5", 3, "noise.h5: not an HDF5 file"},
         {SMALL " -o nowhere/x.h5", 4, "create the folder first"},
