@@ -70,8 +70,8 @@ case $1 in
 arm) setup_packages core gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user ;;
 avx2) setup_packages core qemu-user ;;
 clang) setup_packages test ;;
-portable) setup_packages core clang libomp-dev libclang-rt-14-dev ;;
-wasm) setup_packages core clang lld llvm wasi-libc libclang-rt-14-dev-wasm32 ;;
+portable) setup_packages core clang libomp-dev libclang-rt-NN-dev ;;
+wasm) setup_packages core clang lld llvm wasi-libc libclang-rt-NN-dev-wasm32 ;;
 esac
 case $1 in
 avx2) # qemu 7.2 reads what a masked load leaves out, so lib_lanes fails there, not on a processor

@@ -36,7 +36,7 @@ optional_library(cmocka [[
 #include <setjmp.h>
 #include <cmocka.h>
 int main(void) { return cmocka_run_group_tests((const struct CMUnitTest *)0, 0, 0); }]]
-  "No unit tests: install libcmocka-dev"
+  "No unit tests: no cmocka"
   INCLUDES ${CMOCKA_INCLUDE_DIRS} LIBRARIES ${CMOCKA_LINK_LIBRARIES})
 
 set(sources_of_files import|importer|mesh_files|mesh_text|polygon|recentre|reply|child|confine)
@@ -45,7 +45,7 @@ if(SHAPEBENCH_CORE)
   optional_library(gsl [[
 #include <gsl/gsl_linalg.h>
 int main(void) { return gsl_linalg_SV_decomp_jacobi((gsl_matrix *)0, 0, 0); }]]
-    "No unit tests: install libgsl-dev" INCLUDES ${GSL_INCLUDE_DIRS} LIBRARIES ${GSL_LINK_LIBRARIES})
+    "No unit tests: no GSL" INCLUDES ${GSL_INCLUDE_DIRS} LIBRARIES ${GSL_LINK_LIBRARIES})
   if(NOT has_gsl)
     set(has_cmocka OFF)
   endif()
@@ -62,7 +62,7 @@ pkg_search_module(MPI QUIET mpi-c ompi-c mpich)
 optional_library(mpi [[
 #include <mpi.h>
 int main(void) { return MPI_Init(0, 0); }]]
-  "No MPI: 'mpirun shapebench' will refuse; --shard and merge do without (libopenmpi-dev openmpi-bin)"
+  "No MPI: 'mpirun shapebench' will refuse; --shard and merge do without"
   INCLUDES ${MPI_INCLUDE_DIRS} LIBRARIES ${MPI_LINK_LIBRARIES}
   USED_BY bench/campaign/ranks.c SHAPEBENCH_MPI)
 
@@ -75,7 +75,7 @@ optional_library(modes [[ /* those of reference/meshless/solve */
 #include <cholmod.h>
 void dpstrf_(void);
 int main(void) { dpstrf_(); return dsaupd_c != 0 && cholmod_start(0); }]]
-  "No meshless bodies: install libsuitesparse-dev, libarpack2-dev, liblapack-dev"
+  "No meshless bodies: no SuiteSparse, ARPACK or LAPACK"
   INCLUDES ${ARPACK_INCLUDE_DIRS} ${CHOLMOD_INCLUDE}
   LIBRARIES ${ARPACK_LINK_LIBRARIES} ${CHOLMOD_LIBRARY} ${LAPACK_LIBRARY})
 if(has_modes) # sources that are not compiled
@@ -89,7 +89,7 @@ pkg_check_modules(SECCOMP QUIET libseccomp)
 optional_library(seccomp [[
 #include <seccomp.h>
 int main(void) { return seccomp_load(seccomp_init(SCMP_ACT_ALLOW)); }]]
-  "No filter of what the mesh importer asks the system for: install libseccomp-dev"
+  "No filter of what the mesh importer asks the system for: no libseccomp"
   INCLUDES ${SECCOMP_INCLUDE_DIRS} LIBRARIES ${SECCOMP_LINK_LIBRARIES}
   USED_BY lib/system/confine.c SHAPEBENCH_SECCOMP)
 if(has_seccomp)

@@ -23,6 +23,10 @@ for module in mpi-c cmocka libseccomp arpack; do
     printf '%s\n' "Name: $module" "Description: broken" "Version: 1" "Cflags: -I$folder/absent" \
         "Libs: -L$folder/lib -l${module%-c}" >"$folder/pc/$module.pc"
 done
+# HDF5 is found by its other name, too
+printf '%s\n' "Name: hdf5" "Description: the serial library" "Version: 1" "Cflags: $(pkg-config --cflags hdf5-serial)" \
+    "Libs: $(pkg-config --libs hdf5-serial)" >"$folder/pc/hdf5.pc"
+printf '%s\n' "Name: hdf5-serial" "Description: broken" "Version: 1" "Requires: absent" >"$folder/pc/hdf5-serial.pc"
 if ! PATH=$folder/bin:$PATH PKG_CONFIG_PATH=$folder/pc cmake -S "$root" -B "$folder/build" -G Ninja \
     -DCHOLMOD_LIBRARY="$folder/lib/libcholmod.so" -DLAPACK_LIBRARY="$folder/lib/liblapack.so" \
     >"$folder/log" 2>&1; then
