@@ -79,7 +79,7 @@ def main():
     except ImportError:
         print("no python3-yaml: its form was not tested")
         return
-    steps = yaml.safe_load(text)["jobs"]["compare"]["steps"]
+    steps = [step for job in yaml.safe_load(text)["jobs"].values() for step in job["steps"]]
     if not all(("run" in step) != ("uses" in step) for step in steps):
         fail("a step neither runs nor uses anything")
 
