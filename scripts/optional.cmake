@@ -39,7 +39,7 @@ int main(void) { return cmocka_run_group_tests((const struct CMUnitTest *)0, 0, 
   "No unit tests: no cmocka"
   INCLUDES ${CMOCKA_INCLUDE_DIRS} LIBRARIES ${CMOCKA_LINK_LIBRARIES})
 
-set(sources_of_files import|importer|mesh_files|mesh_text|polygon|recentre|reply|child|confine)
+set(sources_of_files import|importer|mesh_files|mesh_text|polygon|recentre|reply|child)
 if(SHAPEBENCH_CORE)
   pkg_check_modules(GSL QUIET gsl)
   optional_library(gsl [[
@@ -85,14 +85,4 @@ else()
   set(sources_left_out modes|node_order|solver|semidefinite)
 endif()
 
-pkg_check_modules(SECCOMP QUIET libseccomp)
-optional_library(seccomp [[
-#include <seccomp.h>
-int main(void) { return seccomp_load(seccomp_init(SCMP_ACT_ALLOW)); }]]
-  "No filter of what the mesh importer asks the system for: no libseccomp"
-  INCLUDES ${SECCOMP_INCLUDE_DIRS} LIBRARIES ${SECCOMP_LINK_LIBRARIES}
-  USED_BY lib/system/confine.c SHAPEBENCH_SECCOMP)
-if(has_seccomp)
-  list(APPEND pc_needs ${SECCOMP_LDFLAGS})
-endif()
 string(APPEND sources_left_out |import_absent|references_absent|elastic_absent|dense_plain)

@@ -45,6 +45,6 @@ file(WRITE ${CMAKE_BINARY_DIR}/package/triggers "activate-noawait ldconfig\n")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${CMAKE_BINARY_DIR}/package/shlibs ${CMAKE_BINARY_DIR}/package/triggers)
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS # report, plots
   "python3, python3-numpy, python3-h5py, python3-matplotlib, python3-jinja2")
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "gcc, pkg-config, cmake, libassimp-dev, libgsl-dev, libseccomp-dev, libarpack2-dev, \
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "gcc, pkg-config, cmake, libassimp-dev, libgsl-dev, libarpack2-dev, \
 libsuitesparse-dev, liblapack-dev, valgrind, ffmpeg, openmpi-bin") # the -dev ones for the static library
 include(CPack)

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "../../lib/printable.h"
-#include "../../lib/system/confine.h"
 #include "../../lib/voxel/voxelise.h"
 #include "../scene/body.h"
 #include "../scene/map.h"
@@ -244,19 +243,6 @@ static SmCode look_at_map(const Options *options, SmError *error)
     return code;
 }
 
-/* Said here, where strangers' meshes are looked at, and not in every run. */
-static void warn_of_freedom(const char *program)
-{
-    SmConfined can = sm_confinable();
-    if (can.calls && can.files) return;
-    fprintf(stderr,
-            "%s: this system cannot confine the process that reads a mesh: it %s%s%s; take care "
-            "with files that you do not trust\n",
-            program, can.files ? "" : "could open files outside of the mesh's folder (no Landlock)",
-            can.files || can.calls ? "" : " and ",
-            can.calls ? "" : "may make any system call (no seccomp)");
-}
-
 static SmCode perform(void *record, int argc, char **argv, SmError *error)
 {
     const Options *options = record;
@@ -267,7 +253,6 @@ static SmCode perform(void *record, int argc, char **argv, SmError *error)
         bench_machine_info(&machine, json);
         return SM_OK;
     }
-    if (!options->common.quiet) warn_of_freedom(argv[0]);
     if (options->slice) return cut_slice(options, error);
     if (options->map) return look_at_map(options, error);
     long particles = options->particles ? options->particles : 2000;

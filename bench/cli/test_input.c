@@ -2,12 +2,7 @@
  * says what is wrong in one line, and hands nothing of theirs on that a terminal or a spreadsheet
  * would act on. */
 #include <errno.h>
-#include <linux/filter.h>
-#include <linux/seccomp.h>
-#include <sys/prctl.h>
 #include <sys/stat.h>
-#include <sys/syscall.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include "../../lib/test_frame.h"
@@ -146,41 +141,4 @@ TEST(no_cell_is_a_formula)
         assert_string_equal(text, cells[i][1]);
         free(text);
     }
-}
-
-/* A kernel without Landlock, as this process and its children see it. */
-static void take_landlock_away(void)
-{
-    struct sock_filter code[] = {
-        BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(struct seccomp_data, nr)),
-        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_landlock_create_ruleset, 0, 1),
-        BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | ENOSYS),
-        BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW)};
-    struct sock_fprog filter = {sizeof code / sizeof *code, code};
-    assert_int_equal(prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0), 0);
-    assert_int_equal(prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &filter), 0);
-}
-
-TEST(info_says_what_a_kernel_cannot_confine)
-{
-    write_text("point.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    pid_t child = fork();
-    assert_true(child >= 0);
-    if (!child) {
-        char program[] = "shapebench info", file[512];
-        char *words[] = {program, file, NULL};
-        snprintf(file, sizeof file, "%s", path_in("point.obj"));
-        take_landlock_away();
-        if (!freopen(path_in("said"), "w", stderr) || !freopen("/dev/null", "w", stdout)) _exit(1);
-        int code = bench_command_run(&bench_command_info, 2, words);
-        fflush(stderr);
-        _exit(code);
-    }
-    int status;
-    assert_int_equal(waitpid(child, &status, 0), child);
-    assert_int_equal(status, 0);
-    char said[1024];
-    slurp("said", said, sizeof said);
-    if (!strstr(said, "could open files outside of the mesh's folder (no Landlock)"))
-        fail_msg("%s", said);
 }

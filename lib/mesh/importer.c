@@ -1,6 +1,5 @@
 #include "importer.h"
 #include "../system/child.h"
-#include "../system/confine.h"
 #include "mesh_files.h"
 #include "mesh_text.h"
 #include "polygon.h"
@@ -283,13 +282,11 @@ static void note_alteration(const char *line, char *noted)
         }
 }
 
-/* The scene, from a process that can read nothing but what lies beneath the mesh's folder; NULL,
- * and then errno is ENOMEM where memory is what it lacks. */
+/* Returns the scene; NULL, and then errno is ENOMEM where memory is what it lacks. */
 static const struct aiScene *read_scene(const char *path, SmMeshFiles *files, double offset[3])
 {
     const char *dot = strrchr(path, '.'), *suffix = dot ? dot + 1 : "";
     sm_mesh_files_init(path, files);
-    sm_confine(files->folder ? files->folder : "", path);
     errno = 0;
     files->text = rewritten(path, suffix, files, offset);
     if (errno == ENOMEM) return NULL;

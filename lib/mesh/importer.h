@@ -1,5 +1,5 @@
-/* importer.h - what runs in the importer's child process: Assimp, which can read nothing but the
- * mesh and what lies beneath its folder (confine.h, mesh_files.h). */
+/* importer.h - what runs in the importer's child process: Assimp, which reads nothing but the
+ * mesh and what lies beneath its folder (mesh_files.h). */
 #ifndef SM_IMPORTER_H
 #define SM_IMPORTER_H
 

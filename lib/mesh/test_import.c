@@ -1,5 +1,4 @@
 #include "../system/child.h"
-#include "../system/confine.h"
 #include "../test_frame.h"
 #include "import.h"
 #include "mesh_text.h"
@@ -9,8 +8,6 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
-#include <sys/mman.h>
-#include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -287,39 +284,6 @@ TEST(numbers_that_the_importer_alters_are_refused)
                             "property list uchar int vertex_indices\nend_header\n"
                             "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
                  NULL, "fewer lines than its header says");
-}
-
-/* What the child is left: reading beneath the folder, but no writing, no other process, no code. */
-static int body_confined(void *argument, int reply)
-{
-    char inside[300];
-    snprintf(inside, sizeof inside, "%s/inside", (const char *)argument);
-    SmConfined confined = sm_confine(argument, inside);
-    int reading = open(inside, O_RDONLY), writing = open(inside, O_WRONLY);
-    int other = open("/etc/passwd", O_RDONLY), network = socket(AF_INET, SOCK_STREAM, 0);
-    bool killed = kill(getppid(), 0) == 0;
-    bool code =
-        mmap(NULL, 4096, PROT_READ | PROT_EXEC, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0) != MAP_FAILED;
-    char found[8] = {confined.calls, confined.files, reading >= 0, writing >= 0,
-                     other >= 0,     network >= 0,   killed,       code};
-    return !sm_child_write(reply, found, sizeof found);
-}
-
-TEST(a_confined_child_can_only_read)
-{
-    write_text("inside", "text");
-    SmChildLimits limits = {20, 256};
-    SmChildResult result = sm_child_run(body_confined, folder, &limits);
-    assert_int_equal(result.end, SM_CHILD_REPLIED);
-    assert_int_equal(result.size, 8);
-    bool calls = result.reply[0], files = result.reply[1];
-    if (!calls) print_message("system calls are not filtered here\n");
-    if (!files) print_message("no Landlock here\n");
-    assert_true(result.reply[2]);
-    if (calls || files) assert_false(result.reply[3]);
-    if (files) assert_false(result.reply[4]);
-    for (int i = 5; i < 8 && calls; i++) assert_false(result.reply[i]);
-    free(result.reply);
 }
 
 static int body_echo(void *argument, int reply)
