@@ -1,5 +1,6 @@
 #include "cut_solid.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -189,6 +190,7 @@ static double draw(Sheet *s)
 /* Vertices 2 f above fan f and 2 f + 1 below it. */
 static void place_vertices(Sheet *s, SmMesh *solid)
 {
+    assert(solid->position);
     double half = 0.5 * s->thickness * (1 + 0.2 * draw(s));
     for (long n = 0; n < 2 * s->fans; n++) {
         const Fan *fan = &s->at[n / 2];
