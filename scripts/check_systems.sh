@@ -6,7 +6,7 @@
 # usage: scripts/check_systems.sh [--quick] [RELEASE...]     default: bookworm trixie; --quick leaves out scripts/test
 #        TMPDIR holds the roots while this runs, 8 GB each; MIRROR is Debian's archive (http://deb.debian.org/debian)
 # exit codes: 0 all passed, 1 a step failed, 2 usage, 3 not root, or a program is missing
-set -u
+set -um # -m: steps, and what they test, can be interrupted, though they run in the background
 # shellcheck source=scripts/setup
 . "$(dirname -- "${BASH_SOURCE[0]}")/setup"
 columns=(scripts/run view scripts/test package wheel "stored files")
