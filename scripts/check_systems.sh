@@ -12,16 +12,16 @@ set -um # -m: steps, and what they test, can be interrupted, though they run in 
 columns=(scripts/run view scripts/test package wheel "stored files")
 declare -A cells # "RELEASE COLUMN": ok or FAILED
 count=0 status=0 running='' left_out='scripts/test quick' logs=$root/build-systems
-export root mirror=${MIRROR:-http://deb.debian.org/debian}
+export mirror=${MIRROR:-http://deb.debian.org/debian}
 sweep='scripts/run sweep --scene penguin --engine fastlsm --w 1:4 --frames 5 --block 100 -o stored/sweep.h5'
 
-# make_root RELEASE FOLDER: makes a minimal root, and a copy of it for the package; clones this checkout's last commit into
-# it, and writes the mesh that README.md calls MESH.obj there.
+# make_root RELEASE FOLDER: makes a minimal root, and a copy of it for the package; puts the clone, and the mesh that
+# README.md calls MESH.obj, into the first.
 # shellcheck disable=SC2317 # step() calls it
 make_root() {
     debootstrap --variant=minbase "$1" "$2" "$mirror" && cp -a -- "$2" "$2-package" &&
-        mkdir -p -- "$2-package/shapebench/build" && git clone --no-hardlinks "$root" "$2/shapebench" &&
-        PYTHONPATH=$root/scripts python3 -Bc 'import small_inputs; print(small_inputs.BOX)' >"$2/shapebench/MESH.obj"
+        mkdir -p -- "$2-package/shapebench/build" && cp -a -- "$folder/clone" "$2/shapebench" &&
+        PYTHONPATH=$2/shapebench/scripts python3 -Bc 'import small_inputs; print(small_inputs.BOX)' >"$2/shapebench/MESH.obj"
 }
 
 # inside FOLDER COMMAND: runs a line of shell in the clone of a root.
@@ -54,8 +54,8 @@ step() {
 # line RELEASE COLUMN COMMAND: one step, a line of shell in the release's clone.
 line() { step "$1" "$2" "$3" inside "$folder/$1" "$3"; }
 
-# commands DOCUMENT: its indented lines outside of code blocks, without comments.
-commands() { sed -n "/^\`\`\`/,/^\`\`\`$/d; s/ *#.*//; s/^    //p" "$root/$1"; }
+# commands DOCUMENT: prints its indented lines outside of code blocks, without comments.
+commands() { sed -n "/^\`\`\`/,/^\`\`\`$/d; s/ *#.*//; s/^    //p" "$folder/clone/$1"; }
 
 # follow_readme RELEASE: runs README.md's commands, from apt-get on in the package's root, and the program installed there.
 follow_readme() {
@@ -104,8 +104,8 @@ assert len(r.read(\"$2/x.h5\")[\"rows\"]) == 1 and len(r.read(\"$2/sweep.h5\")[\
 # table RELEASE...: README.md's table.
 table() {
     local release name column
-    printf 'The commands of this page in fresh roots: %s, %s.\n\n| system | gcc, HDF5, CMake |' "$(date -u +%F)" \
-        "$(git -C "$root" describe --always)"
+    printf 'The commands of this page in fresh roots: %s, %s.\n\n| system | CMake, gcc, HDF5 |' "$(date -u +%F)" \
+        "$(git -C "$folder/clone" describe --always)"
     printf ' %s |' "${columns[@]}"
     printf '\n|'
     printf ' --- |%.0s' - - "${columns[@]}"
@@ -113,7 +113,7 @@ table() {
         name=$(sed -n 's/^PRETTY_NAME="\(.*\)"/\1/p' "$folder/$release/etc/os-release")
         printf '\n| %s | %s |' "${name:-$release}" \
             "$(chroot "$folder/$release" dpkg-query -W -f "\${Version}\n" gcc libhdf5-dev cmake |
-                sed -E 's/^[0-9]+://; s/[-+~].*//' | paste -sd ' ')"
+                sed -E 's/^[0-9]+://; s/[-+~].*//; $!s/$/,/' | paste -sd ' ')"
         for column in "${columns[@]}"; do printf ' %s |' "${cells[$release $column]--}"; done
     done
     printf '\n'
@@ -125,12 +125,12 @@ if [ "${1-}" = --quick ]; then left_out='scripts/test( quick)?' && shift; fi
 if [ "$(id -u)" -ne 0 ] || ! type debootstrap git unshare python3 >/dev/null; then
     say "start this as root, with debootstrap, git, python3 and util-linux installed" && exit 3
 fi
-folder=$(mktemp -d) || exit 3
+export folder && folder=$(mktemp -d) || exit 3
 trap '[ -z "$running" ] || { kill -KILL $(</proc/$running/task/$running/children); wait; }; rm -rf -- "$folder"' EXIT
 trap 'exit 130' INT TERM
-mkdir -p -- "$logs" && rm -f -- "$logs"/*.log
+mkdir -p -- "$logs" && rm -f -- "$logs"/*.log && git clone -q --no-hardlinks "$root" "$folder/clone" || exit 1
 for release; do
-    step "$release" root "fresh root and clone" make_root "$release" "$folder/$release"
+    step "$release" root "fresh root with a clone" make_root "$release" "$folder/$release"
     [ "${cells[$release root]}" = ok ] || continue
     follow_readme "$release"
     rm -rf -- "$folder/$release-package"
