@@ -49,7 +49,7 @@ def draw(facts, distance, pyplot):
     normal, across, along = (("x", "z", "y"), ("y", "x", "z"), ("z", "x", "y"))[facts["axis"]]
     low, high = facts["low"], facts["high"]
     at = facts["at"] if abs(facts["at"]) > 1e-4 * max(high - low) else 0
-    most = numpy.abs(distance).max()
+    most = numpy.abs(distance).max() or 1  # a slice of zeros has a scale, too
     norm = TwoSlopeNorm(0, -most if distance.min() >= 0 else distance.min(), most if distance.max() <= 0 else distance.max())
     width, height = high - low
     figure, axes = pyplot.subplots(figsize=(5.4, 1.1 + 3.9 * min(max(height / width, 0.3), 2)), constrained_layout=True)

@@ -16,6 +16,7 @@ SIGNATURE = b"\x89HDF\r\n\x1a\n"
 WITH_CHECKSUMS = 2  # HDF5's superblock from this version on
 PART = 1 << 24  # bytes read at once
 DEEPEST = 8  # groups in groups
+VIEWS = {"frames", "fields", "topologies"}  # parts of a trajectory's datasets; HDF5 crashes where they are damaged
 
 # What h5py raises for damaged files, and Python for objects of another kind than expected.
 DAMAGE = (LookupError, OSError, ValueError, RuntimeError, TypeError, AttributeError, MemoryError, ArithmeticError)
@@ -64,11 +65,11 @@ def bytes_held(group, deep=0):
     if deep > DEEPEST:
         raise ValueError("groups lie in groups without an end")
     held = 0
-    for node in group.values():
-        if isinstance(node, h5py.Group):
-            held += bytes_held(node, deep + 1)
-        elif not node.is_virtual:  # the frames of a trajectory are parts of another dataset
-            held += (node.size or 0) * node.dtype.itemsize
+    for name in group:
+        if name in VIEWS:
+            continue
+        node = group[name]
+        held += bytes_held(node, deep + 1) if isinstance(node, h5py.Group) else (node.size or 0) * node.dtype.itemsize
     return held
 
 
