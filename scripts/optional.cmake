@@ -79,7 +79,7 @@ int main(void) { dpstrf_(); return dsaupd_c != 0 && cholmod_start(0); }]]
   INCLUDES ${ARPACK_INCLUDE_DIRS} ${CHOLMOD_INCLUDE}
   LIBRARIES ${ARPACK_LINK_LIBRARIES} ${CHOLMOD_LIBRARY} ${LAPACK_LIBRARY})
 if(has_modes) # sources that are not compiled
-  set(sources_left_out modes_absent)
+  set(sources_left_out modes_absent|solver_absent)
   list(APPEND pc_needs ${ARPACK_LDFLAGS} -lcholmod -llapack)
 else()
   set(sources_left_out modes|node_order|solver|semidefinite)

@@ -192,6 +192,7 @@ if(NOT SHAPEBENCH_SANITIZE AND NOT SHAPEBENCH_CORE)
   add_script_test(python_wheel ../lib/python/test_wheel.py
     $<TARGET_FILE:shapebench_wheel_library> $<TARGET_FILE:shapebench_shared>)
   add_script_test(python_blender ../lib/python/blender/test_blender.py $<TARGET_FILE:shapebench_wheel_library>)
+  add_script_test(page_sources view/test_sources.sh)
   add_script_test(page view/run_tests.py $<TARGET_FILE:shapebench>)
   set_tests_properties(page PROPERTIES TIMEOUT 2400) # without a graphics card it draws slowly
 endif()

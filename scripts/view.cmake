@@ -1,6 +1,7 @@
 # The page's module: what bench/view exports, with all that plays a scene, for WebAssembly. Of bench/ it
-# takes no more than that, and of libraries the sources of libconfig and of SuiteSparse's CHOLMOD, in the
-# folders of these names in SHAPEBENCH_VIEW. Of CHOLMOD it has what needs no BLAS: simplicial factors.
+# takes no more than that, and of libraries the sources of libconfig and, for thin shells, of SuiteSparse's CHOLMOD,
+# in the folders of these names in SHAPEBENCH_VIEW. Of CHOLMOD it has what needs no BLAS: simplicial factors. Its module
+# Core is Utility from SuiteSparse 7.4 on.
 
 foreach(header bench/view/view.h bench/view/given.h bench/view/carried.h bench/view/inside.h bench/view/stored_bodies.h)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${header})
@@ -10,11 +11,16 @@ foreach(header bench/view/view.h bench/view/given.h bench/view/carried.h bench/v
 endforeach()
 
 include(scripts/embed.cmake) # builtin.c, papers.c
-set(libconfig grammar libconfig scanctx scanner strbuf)
-list(TRANSFORM libconfig REPLACE "(.+)" "${SHAPEBENCH_VIEW}/libconfig/lib/\\1.c")
+file(GLOB libconfig CONFIGURE_DEPENDS ${SHAPEBENCH_VIEW}/libconfig/lib/*.c)
 set(sparse ${SHAPEBENCH_VIEW}/suitesparse)
-file(GLOB cholmod CONFIGURE_DEPENDS ${sparse}/CHOLMOD/Core/cholmod_*.c ${sparse}/CHOLMOD/Cholesky/cholmod_*.c
-  ${sparse}/AMD/Source/amd_*.c ${sparse}/COLAMD/Source/colamd.c ${sparse}/SuiteSparse_config/SuiteSparse_config.c)
+file(GLOB cholmod CONFIGURE_DEPENDS ${sparse}/CHOLMOD/Core/cholmod_*.c ${sparse}/CHOLMOD/Utility/cholmod_*.c
+  ${sparse}/CHOLMOD/Cholesky/cholmod_*.c ${sparse}/AMD/Source/amd_*.c ${sparse}/COLAMD/Source/colamd.c
+  ${sparse}/SuiteSparse_config/SuiteSparse_config.c)
+list(FILTER cholmod EXCLUDE REGEX "/(cholmod|amd)_l[0-9_]") # of 64-bit indices
+set(solver solve/solver_absent)
+if(cholmod)
+  set(solver solve/solver solve/node_order)
+endif()
 set_source_files_properties(${libconfig} ${cholmod} PROPERTIES COMPILE_OPTIONS -w
   COMPILE_DEFINITIONS "NDEBUG;NPRINT;NTIMER;NSUPERNODAL;NPARTITION;NCAMD;NMODIFY;NMATRIXOPS;NCHECK")
 
@@ -33,8 +39,8 @@ list(FILTER shell_sources EXCLUDE REGEX "/(cell_functions|foot_search)\\.c$") # 
 list(APPEND view_sources ${shell_sources})
 foreach(noun engine elastic_absent shell_engine stored body/body body/covers body/cylinders body/gauss_rule
     body/matrices body/mls body/nodes body/octants body/pairs motion/grip motion/motion motion/rotation motion/skin
-    solve/dense_plain solve/least_squares solve/node_order solve/solver surface/cloud surface/local_triangles surface/mpu
-    surface/points)
+    solve/dense_plain solve/least_squares surface/cloud surface/local_triangles surface/mpu surface/points
+    ${solver})
   list(APPEND view_sources reference/meshless/${noun}.c)
 endforeach()
 

@@ -76,7 +76,7 @@ def main(arguments):
     scene = read(arguments[2], lambda path: path.read_text(encoding='utf-8'))
     mesh = read(arguments[3], read_mesh)
     bodies = [read(path, read_body) for path in arguments[4:]]
-    texts = [HERE.parents[1] / 'LICENSE', *(wasm.parent / name for name in LICENCES)]
+    texts = [HERE.parents[1] / 'LICENSE', *filter(pathlib.Path.exists, (wasm.parent / name for name in LICENCES))]
     licences = [read(path, lambda at: at.read_text(encoding='utf-8').strip()) for path in texts]
     page = build(wasm.read_bytes(), scene, mesh, bodies, licences)
     new = f'{out}.{os.getpid()}.tmp'

@@ -75,7 +75,9 @@ static cholmod_sparse *held(cholmod_sparse *matrix, const RefMatrices *matrices,
     memcpy(At->i, A->column, entries * sizeof(int));
     memcpy(At->x, A->value, entries * sizeof(double));
     cholmod_sparse *product = cholmod_aat(At, NULL, 0, 1, common);
-    cholmod_sparse *lower = cholmod_copy(product, -1, 1, common);
+    /* SuiteSparse 7's cholmod_copy(product, -1, ...) is empty where size_t has 32 bits (page) */
+    cholmod_sparse *lower = cholmod_band(product, -K->columns, 0, 1, common);
+    if (lower) lower->stype = -1;
     cholmod_sparse *sum = cholmod_add(matrix, lower, one, weight, 1, 1, common);
     cholmod_free_sparse(&At, common);
     cholmod_free_sparse(&product, common);
