@@ -274,7 +274,7 @@ static const BenchSetting common_settings[] = {
     {.help = "Common options:", .section = 90, .who = BENCH_TAKES_ALL},
     {BENCH_OPTION("quiet", NULL, 90, "No progress and no remarks on standard error"),
      BENCH_IN(BenchCommon, quiet), .who = BENCH_TAKES_QUIET},
-    {BENCH_OPTION("threads", "N", 90, "Threads; 0: all cores that it may use (default: 1)"),
+    {BENCH_OPTION("threads", "N", 90, "Threads; 0: all that it may use (default: 1)"),
      BENCH_IN(BenchCommon, threads), 0, SM_MOST_THREADS, .who = BENCH_TAKES_THREADS},
     {BENCH_OPTION("isa", "NAME", 90,
                   "Instruction set of the engines: sse2, avx2, avx512, as SHAPEBENCH_ISA (default: "
