@@ -5,10 +5,14 @@
 #
 # usage: scripts/test_setup.sh     exit codes: 0 passed, 1 failed
 set -eu
-setup=$(cd -- "$(dirname -- "$0")" && pwd)/setup
+scripts=$(cd -- "$(dirname -- "$0")" && pwd)
 folder=$(mktemp -d)
+setup=$folder/clone/scripts/setup # of a tree in which nothing is built yet
 trap 'umount "$folder/disk" 2>/dev/null || :; rm -rf -- "$folder"' EXIT
 fail() { echo "$*"; exit 1; }
+
+mkdir -p "$folder/clone/scripts"
+cp "$scripts/setup" "$scripts/run" "$folder/clone/scripts"
 
 # stand_in PROGRAM LINE...: a program of $folder/bin.
 stand_in() {
@@ -98,8 +102,6 @@ touch "$folder/vtk/vtk.py"
 echo 'raise ImportError' >"$folder/vtk/vtk.py"
 answer pictures "$folder/vtk" | grep -q 'install.*python3-vtk9' || fail "no VTK is asked for"
 
-mkdir "$folder/clone" "$folder/clone/scripts"
-cp "$setup" "$(dirname -- "$setup")/run" "$folder/clone/scripts"
 printf '%s\n' 'cmake_minimum_required(VERSION 3.22)' 'project(p C)' 'add_executable(p p.c)' \
     >"$folder/clone/CMakeLists.txt"
 echo 'int main(void) { return 0; }' >"$folder/clone/p.c"
@@ -140,6 +142,6 @@ else
     echo '[  SKIPPED ] setup_full_disk'
 fi
 
-cmake -DSOURCE="$folder/clone" -DHEADER="$folder/provenance.h" -DVERSION=1.2.3 -P "$(dirname -- "$setup")/provenance.cmake"
+cmake -DSOURCE="$folder/clone" -DHEADER="$folder/provenance.h" -DVERSION=1.2.3 -P "$scripts/provenance.cmake"
 grep -q 'VERSION "1.2.3"' "$folder/provenance.h" && grep -q 'COMMIT "unknown"' "$folder/provenance.h" ||
     fail "no version without .git"
