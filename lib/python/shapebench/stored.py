@@ -12,8 +12,7 @@ import numpy as np
 
 USER_BLOCK = 512  # bytes before HDF5, which have the checksum (bench/store/checksum.h)
 FORMAT = {"libver": ("v110", "v110"), "userblock_size": USER_BLOCK}  # of h5py.File() that is to write such a file
-SIGNATURE = b"\x89HDF\r\n\x1a\n"
-WITH_CHECKSUMS = 2  # HDF5's superblock from this version on
+OLD = (b"\x89HDF\r\n\x1a\n\0", b"\x89HDF\r\n\x1a\n\1")  # HDF5's superblocks of versions without checksums
 PART = 1 << 24  # bytes read at once
 DEEPEST = 8  # groups in groups
 VIEWS = {"frames", "fields", "topologies"}  # parts of a trajectory's datasets; HDF5 crashes where they are damaged
@@ -54,7 +53,7 @@ def checksum_holds(path, *_):
             holds = head == user_block(file)
     except OSError as error:
         raise Unusable(f"{path}: cannot be read: {error.strerror}") from None
-    if head.startswith(SIGNATURE) and head[len(SIGNATURE)] < WITH_CHECKSUMS:
+    if head.startswith(OLD):
         raise Unusable(f"{path}: HDF5 without checksums, as shapebench stored it until November 2026: make it again, "
                        f"or convert it: h5repack -L -f FLET {path} NEW.h5")
     return holds
