@@ -15,11 +15,11 @@ count=0 status=0 running='' left_out='scripts/test quick' logs=$root/build-syste
 export mirror=${MIRROR:-http://deb.debian.org/debian}
 sweep='scripts/run sweep --scene penguin --engine fastlsm --w 1:4 --frames 5 --block 100 -o stored/sweep.h5'
 
-# make_root RELEASE FOLDER: makes a minimal root, and a copy of it for the package; puts the clone, and the mesh that
-# README.md calls MESH.obj, into the first.
+# make_root RELEASE FOLDER: makes a minimal root that knows localhost, and a copy of it for the package; puts the clone,
+# and the mesh that README.md calls MESH.obj, into the first.
 # shellcheck disable=SC2317 # step() calls it
 make_root() {
-    debootstrap --variant=minbase "$1" "$2" "$mirror" && cp -a -- "$2" "$2-package" &&
+    debootstrap --variant=minbase "$1" "$2" "$mirror" && echo 127.0.0.1 localhost >"$2/etc/hosts" && cp -a -- "$2" "$2-package" &&
         mkdir -p -- "$2-package/shapebench/build" && cp -a -- "$folder/clone" "$2/shapebench" &&
         PYTHONPATH=$2/shapebench/scripts python3 -Bc 'import small_inputs; print(small_inputs.BOX)' >"$2/shapebench/MESH.obj"
 }

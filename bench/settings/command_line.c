@@ -32,16 +32,6 @@ static void print_version(FILE *file, struct argp_state *state)
 
 void (*argp_program_version_hook)(FILE *, struct argp_state *) = print_version;
 
-/* Where the system's BLAS is OpenBLAS, which has threads of its own. */
-void openblas_set_num_threads(int threads) __attribute__((weak));
-
-/* One number for all that takes none of its own (lib/system/team.h). */
-static void set_threads(int threads)
-{
-    omp_set_num_threads(threads);
-    if (openblas_set_num_threads) openblas_set_num_threads(threads);
-}
-
 /* Standard error while getopt's words go elsewhere, or NULL. */
 static FILE *console;
 
@@ -320,5 +310,5 @@ void bench_options_parse(const BenchCommandLine *line, int argc, char **argv, vo
     }
     if (!common->isas.count) common->isas.name[common->isas.count++] = sm_isa_name(sm_isa());
     if (!common->threads) common->threads = sm_cores("");
-    set_threads(common->threads);
+    omp_set_num_threads(common->threads); /* lib/system/team.h */
 }

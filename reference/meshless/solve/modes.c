@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "blas.h"
+
 enum { MOST_RESTARTS = 300 };
 
 /* ARPACK's reverse communication for a symmetric problem. */
@@ -112,8 +114,9 @@ SmCode ref_modes_of(const RefMatrices *matrices, RefSolver *solver, double shift
     modes->count = count;
     modes->lambda = sm_alloc((size_t)count, sizeof *modes->lambda);
     modes->shape = sm_alloc((size_t)size * (size_t)count, sizeof *modes->shape);
-    int info = iterate(matrices, solver, &lanczos);
+    int threads = ref_blas_alone(), info = iterate(matrices, solver, &lanczos);
     if (info == 0) info = extract(&lanczos, shift, modes);
+    ref_blas_again(threads);
     lanczos_free(&lanczos);
     if (info == 0) return SM_OK;
     ref_modes_free(modes);

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "blas.h"
 #include "node_order.h"
 #include "semidefinite.h"
 
@@ -112,9 +113,11 @@ static void solve_free(RefSolver *solver, int count, const double *b, double *x)
                            .x = solver->place ? solver->placed : (double *)b,
                            .xtype = CHOLMOD_REAL,
                            .dtype = CHOLMOD_DOUBLE};
+    int threads = ref_blas_alone();
 #pragma omp teams num_teams(1) thread_limit(1)
     cholmod_solve2(CHOLMOD_A, solver->factor, &right, NULL, &solver->result[several], NULL,
                    &solver->work[several][0], &solver->work[several][1], &solver->common);
+    ref_blas_again(threads);
     if (solver->place)
         reorder(solver, count, true, solver->result[several]->x, x);
     else
@@ -147,8 +150,10 @@ static void complement(RefSolver *solver)
 /* On one thread, as all else here: CHOLMOD itself asks for four, whatever OpenMP's number is. */
 static void factorise(cholmod_sparse *matrix, RefSolver *solver)
 {
+    int threads = ref_blas_alone();
 #pragma omp teams num_teams(1) thread_limit(1)
     cholmod_factorize(matrix, solver->factor, &solver->common);
+    ref_blas_again(threads);
 }
 
 /* In the order of the nodes, whatever rows add between them: CHOLMOD finds none with so little fill
