@@ -10,20 +10,20 @@
 #include "svd_polar.h"
 
 /* Breadth-first search from r over w rings. Writes what it reaches in the order found and returns
- * how many; seen[p] == r + 1 marks particles found already. */
-static long reach(const RefLinks *links, int w, long r, long *seen, int *found)
+ * how many; seen[p] == mark tells particles found already. */
+static long reach(const RefLinks *links, int w, long r, long mark, long *seen, int *found)
 {
     long begin = 0, end = 1;
     found[0] = (int)r;
-    seen[r] = r + 1;
+    seen[r] = mark;
     for (int ring = 0; ring < w && begin < end; ring++) {
         long next = end;
         for (long f = begin; f < end; f++) {
             int p = found[f];
             for (long l = links->start[p]; l < links->start[p + 1]; l++) {
                 int q = links->neighbour[l];
-                if (seen[q] == r + 1) continue;
-                seen[q] = r + 1;
+                if (seen[q] == mark) continue;
+                seen[q] = mark;
                 found[next++] = q;
             }
         }
@@ -45,7 +45,7 @@ void ref_regions_reach(const RefLinks *links, int w, RefRegions *regions)
 #pragma omp for schedule(dynamic)
         for (long block = 0; block < members.blocks; block++)
             for (long r = sm_csr_parts_from(block); r < sm_csr_parts_to(&members, block); r++) {
-                long count = reach(links, w, r, seen, found);
+                long count = reach(links, w, r, r + 1, seen, found);
                 sm_sort_ints(found, count);
                 sm_csr_parts_add(&members, r, found, count);
             }
@@ -56,46 +56,99 @@ void ref_regions_reach(const RefLinks *links, int w, RefRegions *regions)
     *regions = (RefRegions){.count = links->count, .start = rows.first, .member = rows.item};
 }
 
+struct RefWalk {
+    long region, count; /* + 1, and its members */
+    long mark, *seen;   /* as reach() has them */
+    int *found;
+};
+
+RefMembers ref_members(const RefRegions *regions, long r)
+{
+    if (regions->member)
+        return (RefMembers){regions->member + regions->start[r],
+                            regions->start[r + 1] - regions->start[r]};
+    struct RefWalk *walk = regions->walk + omp_get_thread_num();
+    if (!walk->seen) {
+        walk->seen = sm_alloc((size_t)regions->count, sizeof *walk->seen);
+        walk->found = sm_alloc((size_t)regions->count, sizeof *walk->found);
+    }
+    if (walk->region != r + 1) {
+        walk->count = reach(&regions->links, regions->w, r, ++walk->mark, walk->seen, walk->found);
+        walk->region = r + 1;
+    }
+    return (RefMembers){walk->found, walk->count};
+}
+
+void ref_regions_walk(const RefLinks *links, int w, RefRegions *regions)
+{
+    long count = links->count;
+    *regions = (RefRegions){.count = count, .links = *links, .w = w};
+    regions->walk = sm_alloc(SM_MOST_THREADS, sizeof *regions->walk);
+    regions->start = sm_alloc((size_t)count + 1, sizeof *regions->start);
+#pragma omp parallel for schedule(dynamic, 64) num_threads(sm_team(0))
+    for (long r = 0; r < count; r++) regions->start[r + 1] = ref_members(regions, r).count;
+    for (long r = 0; r < count; r++) regions->start[r + 1] += regions->start[r];
+}
+
 void ref_regions_build(const SmVoxels *voxels, int w, const int (*broken)[2], long broken_count,
                        RefRegions *regions)
 {
     RefLinks links;
+    double side = 2.0 * w + 1;
     ref_links_build(voxels, broken, broken_count, &links);
+    if ((double)links.count * fmin(side * side * side, (double)links.count) > REF_KEPT) {
+        ref_regions_walk(&links, w, regions);
+        return;
+    }
     ref_regions_reach(&links, w, regions);
     ref_links_free(&links);
 }
 
 void ref_regions_free(RefRegions *regions)
 {
-    free(regions->start);
-    free(regions->member);
+    for (int t = 0; t < SM_MOST_THREADS && regions->walk; t++)
+        sm_free_all(regions->walk[t].seen, regions->walk[t].found);
+    if (regions->walk) ref_links_free(&regions->links);
+    sm_free_all(regions->start, regions->member, regions->walk);
     memset(regions, 0, sizeof *regions);
 }
 
 typedef struct {
-    uint64_t hash;
+    uint64_t hash[2];
     long size;
-    const int *member;
+    const int *member; /* or NULL */
 } Set;
 
 /* Orders sets by hash; equal hashes by what they hold, so that a collision changes nothing. */
 static int compare_sets(const void *a, const void *b)
 {
     const Set *p = a, *q = b;
-    if (p->hash != q->hash) return p->hash < q->hash ? -1 : 1;
+    for (int i = 0; i < 2; i++)
+        if (p->hash[i] != q->hash[i]) return p->hash[i] < q->hash[i] ? -1 : 1;
     if (p->size != q->size) return p->size < q->size ? -1 : 1;
-    return memcmp(p->member, q->member, (size_t)p->size * sizeof *p->member);
+    return p->member ? memcmp(p->member, q->member, (size_t)p->size * sizeof *p->member) : 0;
+}
+
+/* In whatever order the members come. */
+static Set set_of(const RefRegions *regions, long r)
+{
+    RefMembers of = ref_members(regions, r);
+    Set set = {.size = of.count, .member = regions->member ? of.member : NULL};
+    for (long n = 0; n < of.count; n++)
+        for (int i = 0; i < 2; i++) { /* the finaliser of MurmurHash3 */
+            uint64_t h = (uint64_t)of.member[n] + (i ? 0x9e3779b97f4a7c15u : 1);
+            h = (h ^ h >> 33) * 0xff51afd7ed558ccdu;
+            h = (h ^ h >> 33) * 0xc4ceb9fe1a85ec53u;
+            set.hash[i] += h ^ h >> 33;
+        }
+    return set;
 }
 
 long ref_regions_unique(const RefRegions *regions)
 {
     Set *set = sm_alloc((size_t)regions->count, sizeof *set);
-    for (long r = 0; r < regions->count; r++) {
-        const int *member = regions->member + regions->start[r];
-        set[r] = (Set){14695981039346656037u, regions->start[r + 1] - regions->start[r], member};
-        for (long n = 0; n < set[r].size; n++) /* FNV-1a, a member at a time */
-            set[r].hash = (set[r].hash ^ (uint64_t)member[n]) * 1099511628211u;
-    }
+#pragma omp parallel for schedule(dynamic, 64) num_threads(sm_team(0))
+    for (long r = 0; r < regions->count; r++) set[r] = set_of(regions, r);
     qsort(set, (size_t)regions->count, sizeof *set, compare_sets);
     long unique = regions->count > 0;
     for (long r = 1; r < regions->count; r++) unique += compare_sets(set + r - 1, set + r) != 0;
@@ -116,8 +169,9 @@ double ref_region_mean(const RefRegions *regions, const double *weight, const do
                        long r, double mean[3])
 {
     double M = 0, sum[3] = {0};
-    for (long n = regions->start[r]; n < regions->start[r + 1]; n++) {
-        int i = regions->member[n];
+    RefMembers of = ref_members(regions, r);
+    for (long n = 0; n < of.count; n++) {
+        int i = of.member[n];
         M += weight[i];
         for (int a = 0; a < 3; a++) sum[a] += weight[i] * (y[i][a] - y[r][a]);
     }
@@ -129,9 +183,10 @@ void ref_region_moments(const RefRegions *regions, const double *weight, const d
                         const double mean[3], const double (*x0)[3], const double c0[3], long r,
                         double A[9])
 {
+    RefMembers of = ref_members(regions, r);
     memset(A, 0, 9 * sizeof *A);
-    for (long n = regions->start[r]; n < regions->start[r + 1]; n++) {
-        int i = regions->member[n];
+    for (long n = 0; n < of.count; n++) {
+        int i = of.member[n];
         for (int a = 0; a < 3; a++)
             for (int b = 0; b < 3; b++)
                 A[3 * a + b] += weight[i] * (y[i][a] - mean[a]) * (x0[i][b] - c0[b]);
@@ -142,7 +197,8 @@ void ref_match_sums(const RefRegions *regions, const double (*x0)[3], const doub
                     const double (*x)[3], RefMatch *match)
 {
     double *modified = modified_masses(regions, m);
-#pragma omp parallel for num_threads(sm_team(0)) if (regions->count > REF_SERIAL)
+#pragma omp parallel for num_threads(sm_team(0))                                                   \
+    schedule(dynamic, 64) if (regions->count > REF_SERIAL)
     for (long r = 0; r < regions->count; r++) {
         RefMatch *t = match + r;
         ref_region_mean(regions, modified, x0, r, t->c0);
@@ -154,7 +210,8 @@ void ref_match_sums(const RefRegions *regions, const double (*x0)[3], const doub
 
 void ref_match_rotations(const RefRegions *regions, RefMatch *match)
 {
-#pragma omp parallel for num_threads(sm_team(0)) if (regions->count > REF_SERIAL)
+#pragma omp parallel for num_threads(sm_team(0))                                                   \
+    schedule(dynamic, 64) if (regions->count > REF_SERIAL)
     for (long r = 0; r < regions->count; r++) {
         double R[9];
         ref_polar(match[r].A, match[r].R, R);
@@ -165,17 +222,19 @@ void ref_match_rotations(const RefRegions *regions, RefMatch *match)
 void ref_match_goals(const RefRegions *regions, const RefMatch *match, const double (*x0)[3],
                      const double (*x)[3], double (*g)[3])
 {
-#pragma omp parallel for num_threads(sm_team(0)) if (regions->count > REF_SERIAL)
+#pragma omp parallel for num_threads(sm_team(0))                                                   \
+    schedule(dynamic, 64) if (regions->count > REF_SERIAL)
     for (long i = 0; i < regions->count; i++) {
         double sum[3] = {0}; /* of T_r x0_i - x_i; the regions that hold i are R_i's members */
-        for (long n = regions->start[i]; n < regions->start[i + 1]; n++) {
-            const RefMatch *t = match + regions->member[n];
+        RefMembers in = ref_members(regions, i);
+        for (long n = 0; n < in.count; n++) {
+            const RefMatch *t = match + in.member[n];
             for (int a = 0; a < 3; a++) {
                 sum[a] += t->c[a] - x[i][a];
                 for (int b = 0; b < 3; b++) sum[a] += t->R[3 * a + b] * (x0[i][b] - t->c0[b]);
             }
         }
-        double size = (double)(regions->start[i + 1] - regions->start[i]);
+        double size = (double)in.count;
         for (int a = 0; a < 3; a++) g[i][a] = x[i][a] + sum[a] / size; /* eq. 12 */
     }
 }
@@ -235,8 +294,9 @@ static void solve_inertia(double I[9], const double L[3], const RefSums *sums, l
 static double extent(const RefRegions *regions, const double (*x)[3], long r, const double c[3])
 {
     double largest = 0;
-    for (long n = regions->start[r]; n < regions->start[r + 1]; n++)
-        for (int a = 0; a < 3; a++) largest = fmax(largest, fabs(x[regions->member[n]][a] - c[a]));
+    RefMembers of = ref_members(regions, r);
+    for (long n = 0; n < of.count; n++)
+        for (int a = 0; a < 3; a++) largest = fmax(largest, fabs(x[of.member[n]][a] - c[a]));
     return largest;
 }
 
@@ -251,8 +311,9 @@ void ref_rigid_motion(const RefRegions *regions, const double *weight, const dou
     double unit = extent(regions, x, r, motion->c);
     memset(motion->omega, 0, sizeof motion->omega);
     if (!(unit > 0 && isfinite(unit))) return; /* all in one point: nothing turns */
-    for (long n = regions->start[r]; n < regions->start[r + 1]; n++) {
-        int i = regions->member[n];
+    RefMembers of = ref_members(regions, r);
+    for (long n = 0; n < of.count; n++) {
+        int i = of.member[n];
         double share = weight[i] / M, d[3], dv[3], turn[3];
         for (int a = 0; a < 3; a++) {
             d[a] = (x[i][a] - motion->c[a]) / unit;
@@ -282,18 +343,21 @@ void ref_rigid_velocity(const RefRegions *regions, const double *m, const double
 {
     double *modified = modified_masses(regions, m);
     RefRigidMotion *motion = sm_alloc((size_t)regions->count, sizeof *motion);
-#pragma omp parallel for num_threads(sm_team(0)) if (regions->count > REF_SERIAL)
+#pragma omp parallel for num_threads(sm_team(0))                                                   \
+    schedule(dynamic, 64) if (regions->count > REF_SERIAL)
     for (long r = 0; r < regions->count; r++)
         ref_rigid_motion(regions, modified, x, v, sums, r, motion + r);
-#pragma omp parallel for num_threads(sm_team(0)) if (regions->count > REF_SERIAL)
+#pragma omp parallel for num_threads(sm_team(0))                                                   \
+    schedule(dynamic, 64) if (regions->count > REF_SERIAL)
     for (long i = 0; i < regions->count; i++) {
         double sum[3] = {0};
-        for (long n = regions->start[i]; n < regions->start[i + 1]; n++) {
+        RefMembers in = ref_members(regions, i);
+        for (long n = 0; n < in.count; n++) {
             double here[3];
-            ref_motion_at(motion + regions->member[n], x[i], here);
+            ref_motion_at(motion + in.member[n], x[i], here);
             for (int a = 0; a < 3; a++) sum[a] += here[a];
         }
-        double size = (double)(regions->start[i + 1] - regions->start[i]);
+        double size = (double)in.count;
         for (int a = 0; a < 3; a++) u[i][a] = sum[a] / size;
     }
     free(motion);

@@ -11,22 +11,39 @@
 #include "link.h"
 
 /* Regions in CSR form: members of region r are member[start[r]] ..
- * member[start[r + 1] - 1], rising. */
+ * member[start[r + 1] - 1], rising. Those of many are not kept: `member` is NULL. */
 typedef struct {
     long count;
     long *start; /* [count + 1] */
     int *member;
+    RefLinks links; /* where they are not kept, and how far regions reach; */
+    int w;
+    struct RefWalk *walk; /* [SM_MOST_THREADS] the region that each thread found last */
 } RefRegions;
+
+typedef struct {
+    const int *member;
+    long count;
+} RefMembers;
+
+/* The members of region r, until the calling thread, one of a team's, asks for those of another.
+ * Where they are not kept they are found anew, not rising: O(members). */
+RefMembers ref_members(const RefRegions *regions, long r);
 
 /* Members of every region: particles reachable within w one-ring steps (fastlsm section 2). Two
  * particles are neighbours when they share a material cell. `broken` lists `broken_count` links
- * (pairs of particles) that no longer join neighbours. The caller frees `regions`. */
+ * (pairs of particles) that no longer join neighbours. They are kept if there cannot be more than
+ * REF_KEPT. The caller frees `regions`. */
+#define REF_KEPT 1e8
 void ref_regions_build(const SmVoxels *voxels, int w, const int (*broken)[2], long broken_count,
                        RefRegions *regions);
 void ref_regions_free(RefRegions *regions);
 
-/* The same over a one-ring graph that the caller has already. */
+/* The same over a one-ring graph that the caller has already; members are kept. */
 void ref_regions_reach(const RefLinks *links, int w, RefRegions *regions);
+
+/* The same, not kept: the regions take the graph over. */
+void ref_regions_walk(const RefLinks *links, int w, RefRegions *regions);
 
 /* (1/M) sum of weight_i y_i over region r, formed relative to y_r, into `mean`; returns M, the sum
  * of the weights. O(members). */
@@ -38,7 +55,8 @@ void ref_region_moments(const RefRegions *regions, const double *weight, const d
                         const double mean[3], const double (*x0)[3], const double c0[3], long r,
                         double A[9]);
 
-/* How many different member sets there are ("unique regions"). */
+/* How many different member sets there are ("unique regions"); where they are not kept, by 128 bits
+ * of each. */
 long ref_regions_unique(const RefRegions *regions);
 
 /* One region's shape matching. */

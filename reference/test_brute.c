@@ -1,6 +1,7 @@
 /* Regions on shapes whose answer is known, and what the brute-force sums must conserve. */
 #include "brute.h"
 
+#include "../lib/csr.h"
 #include "../lib/test_frame.h"
 #include "../lib/test_random.h"
 
@@ -419,6 +420,41 @@ TEST(crushed_bodies_keep_their_momentum)
         assert_true(centre_moves(&body, CONST(body.x), CONST(body.g)) < 1e-13);
         ref_rigid_velocity(&body.regions, body.m, CONST(body.x), CONST(body.v), NULL, body.g);
         assert_true(centre_moves(&body, CONST(body.v), CONST(body.g)) < 1e-13);
+        body_free(&body);
+    }
+}
+
+/* Regions that are found anew at each use, in every order, are those that are kept. */
+TEST(regions_that_are_not_kept)
+{
+    unsigned seed = 31;
+    for (int trial = 0; trial < 20; trial++) {
+        Body body = body_create(&seed, 1 + trial % 5);
+        RefLinks links;
+        RefRegions anew;
+        int *found = sm_alloc((size_t)body.count, sizeof *found);
+        double(*other)[3] = sm_alloc((size_t)body.count, sizeof *other);
+        ref_links_build(&body.voxels, NULL, 0, &links);
+        ref_regions_walk(&links, 1 + trial % 5, &anew);
+        assert_int_equal(ref_regions_unique(&anew), ref_regions_unique(&body.regions));
+        for (long n = 0; n < 2 * body.count; n++) {
+            long r = n % 2 ? n / 2 : (n * 7919) % body.count, count = size_of(&body.regions, r);
+            RefMembers members = ref_members(&anew, r), kept = ref_members(&body.regions, r);
+            assert_int_equal(members.count, count);
+            assert_int_equal(size_of(&anew, r), count);
+            memcpy(found, members.member, (size_t)count * sizeof *found);
+            sm_sort_ints(found, count);
+            assert_memory_equal(found, kept.member, (size_t)count * sizeof *found);
+        }
+        body_goals(&body);
+        ref_goals(&anew, CONST(body.x0), body.m, CONST(body.x), other);
+        assert_near(CONST(other), CONST(body.g), body.count, 1e-12);
+        ref_rigid_velocity(&body.regions, body.m, CONST(body.x), CONST(body.v), NULL, body.g);
+        ref_rigid_velocity(&anew, body.m, CONST(body.x), CONST(body.v), NULL, other);
+        assert_near(CONST(other), CONST(body.g), body.count, 1e-9);
+        ref_regions_free(&anew);
+        free(found);
+        free(other);
         body_free(&body);
     }
 }

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../fastlsm/operations.h"
 #include "../../lib/printable.h"
 #include "../../lib/system/team.h"
 #include "../../octree/engine.h"
@@ -15,8 +16,9 @@
 
 double bench_check_members(const BenchBody *body, int w)
 {
-    double side = 2.0 * w + 1, count = (double)body->voxels.particle_count;
-    return count * fmin(side * side * side, count);
+    double count = (double)body->voxels.particle_count, members = 1;
+    for (int d = 0; d < 3; d++) members *= lsm_window_places(w, body->voxels.size[d] + 1);
+    return count * fmin(members, count);
 }
 
 static double lattice_members(const BenchScene *scene, const BenchBody *body,
@@ -248,7 +250,8 @@ void bench_check_tied(const BenchCheck *check, const char *precision, const doub
         0.5 * bench_check_epsilon(precision) * extent((const double(*)[3])at, check->count);
     double least = fmin(0.125, known / tolerance);
     double *hold = sm_alloc((size_t)check->count, sizeof *hold);
-#pragma omp parallel for num_threads(sm_team(0)) if (check->count > REF_SERIAL)
+#pragma omp parallel for schedule(dynamic, 64)                                                     \
+    num_threads(sm_team(0)) if (check->count > REF_SERIAL)
     for (long r = 0; r < check->count; r++) {
         RefCondition found;
         ref_condition(regions, check->weight, (const double(*)[3])check->rest,
@@ -256,9 +259,11 @@ void bench_check_tied(const BenchCheck *check, const char *precision, const doub
         hold[r] = found.hold;
     }
     memset(tied, 0, (size_t)check->count * sizeof *tied);
-    for (long r = 0; r < check->count; r++)
-        for (long n = regions->start[r]; n < regions->start[r + 1]; n++)
-            if (!(hold[r] >= least)) tied[regions->member[n]] = true;
+    for (long r = 0; r < check->count; r++) {
+        if (hold[r] >= least) continue;
+        RefMembers held = ref_members(regions, r);
+        for (long n = 0; n < held.count; n++) tied[held.member[n]] = true;
+    }
     free(hold);
     free(at);
 }

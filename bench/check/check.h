@@ -67,14 +67,15 @@ typedef struct {
     long parted_wrong;       /* links of a lattice that are broken but not cut, or the other way */
 } BenchDeviation;
 
-/* Region members that a check of this body would hold in memory, at most; 4 bytes each. Beyond
+/* Members of all regions of this body, at most: particles times the mean part of a window that is
+ * in its box. A check walks through them some ten times, at thirty nanoseconds each: beyond
  * BENCH_MOST_MEMBERS nothing is checked. */
-#define BENCH_MOST_MEMBERS 1e8
+#define BENCH_MOST_MEMBERS 2e9
 double bench_check_members(const BenchBody *body, int w);
 
 /* What an engine's goals are held to: all particles' regions by the scene's w in cells, or a
  * tree's, leaf by leaf as the engine has them (reference/octree_regions.h is their twin, in tests).
- * `members` says how many region members that holds in memory. */
+ * `members` says how many region members, at most, that walks through. */
 typedef struct BenchTwin {
     double (*members)(const BenchScene *scene, const BenchBody *body, const SmEngine *engine);
     void (*begin)(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
@@ -87,7 +88,7 @@ extern const BenchTwin bench_lattice_twin, bench_octree_twin;
 double bench_twin_members(const BenchRunner *runner);
 
 /* Builds the reference's regions for a lattice engine, of whose links these pairs are parted
- * (parted.h), which it takes over: O(particles (2w+1)^3) time and memory. */
+ * (parted.h), which it takes over: O(particles (2w+1)^3) time, and memory for up to REF_KEPT members. */
 void bench_check_create(const BenchBody *body, int w, long parted, int (*pair)[2],
                         BenchCheck *check);
 

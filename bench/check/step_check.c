@@ -232,16 +232,19 @@ static void particle_rounding(const BenchCheck *check, const RefSums *sums, cons
 {
     const RefRegions *regions = bench_check_regions(check);
     double *of = sm_alloc((size_t)check->count, sizeof *of);
-#pragma omp parallel for num_threads(sm_team(0)) if (check->count > REF_SERIAL)
+#pragma omp parallel for schedule(dynamic, 64)                                                     \
+    num_threads(sm_team(0)) if (check->count > REF_SERIAL)
     for (long r = 0; r < check->count; r++) {
         RefCondition found;
         ref_condition(regions, check->weight, (const double(*)[3])check->rest, x, r, 0, &found);
         of[r] = bench_check_rounding(&found, sums, r);
         if (regions->start[r + 1] - regions->start[r] == 1) of[r] = 0; /* it cannot turn */
     }
-    for (long r = 0; r < check->count; r++)
-        for (long n = regions->start[r]; n < regions->start[r + 1]; n++)
-            rounding[regions->member[n]] = fmax(rounding[regions->member[n]], of[r]);
+    for (long r = 0; r < check->count; r++) {
+        RefMembers held = ref_members(regions, r);
+        for (long n = 0; n < held.count; n++)
+            rounding[held.member[n]] = fmax(rounding[held.member[n]], of[r]);
+    }
     free(of);
 }
 

@@ -26,7 +26,7 @@ static bool print_deviation(const BenchRunner *runner)
         return true;
     }
     if (bench_twin_members(runner) > BENCH_MOST_MEMBERS) {
-        printf("deviation: not checked: brute force would take too much memory\n");
+        printf("deviation: not checked: brute force would take too long\n");
         return true;
     }
     BenchCheck check;

@@ -15,7 +15,7 @@ typedef struct BenchChecker {
      * rest() is called before and state() in the end, both without a check. NULL: it can. */
     bool (*breaks)(const BenchScene *scene);
 
-    /* SM_INPUT: the bodies contradict themselves, or their check would take too much memory. May be
+    /* SM_INPUT: the bodies contradict themselves, or their check would take too long. May be
      * NULL. */
     SmCode (*accepts)(const BenchPlayback *play, SmError *error);
 

@@ -80,11 +80,11 @@ static SmCode check_members(const BenchRunner *runner, SmError *error)
 {
     double members = bench_twin_members(runner);
     if (members <= BENCH_MOST_MEMBERS) return SM_OK;
-    return sm_fail(
-        error, SM_INPUT,
-        "%s: regions with %.3g members take too much memory to be checked by brute force "
-        "(at most %g): take narrower ones",
-        runner->scene->file, members, BENCH_MOST_MEMBERS);
+    return sm_fail(error, SM_INPUT,
+                   "%s: regions with %.3g members take too long to be checked by brute force (at "
+                   "most %g): take "
+                   "narrower ones",
+                   runner->scene->file, members, BENCH_MOST_MEMBERS);
 }
 
 /* A check of every group of bodies as it is now. */
