@@ -62,7 +62,7 @@ pkg_search_module(MPI QUIET mpi-c ompi-c mpich)
 optional_library(mpi [[
 #include <mpi.h>
 int main(void) { return MPI_Init(0, 0); }]]
-  "No MPI: 'mpirun shapebench' will refuse; --shard and merge do without"
+  "No MPI: 'mpirun shapebench' will refuse"
   INCLUDES ${MPI_INCLUDE_DIRS} LIBRARIES ${MPI_LINK_LIBRARIES}
   USED_BY bench/campaign/ranks.c SHAPEBENCH_MPI)
 

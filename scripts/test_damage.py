@@ -45,7 +45,7 @@ COPIED = {"baselines.h5": "results/published/baselines.h5"}  # whose making need
 READ = {  # file: what reads it; @ is the file, ! a new name
     "rows.h5": [["PROGRAM", "regress", "--baseline", "@", "--scene", "nothing"], ["PROGRAM", "history", "@", "@"],
                 ["PROGRAM", "report", "-o", "!.html", "@"]],
-    "sweep.h5": [["PROGRAM", "sweep", "@"], ["PROGRAM", "merge", "!.h5", "@"], ["PROGRAM", "report", "-o", "!.html", "@"],
+    "sweep.h5": [["PROGRAM", "sweep", "@"], ["PROGRAM", "report", "-o", "!.html", "@"],
                  ["plot_sweep.py", "@", "-o", "!.svg"]],
     "beam.h5": [["PROGRAM", "calibrate", "@"], ["PROGRAM", "report", "-o", "!.html", "@"],
                 ["plot_calibration.py", "@", "-o", "!.svg"]],

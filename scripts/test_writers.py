@@ -39,7 +39,6 @@ COMMANDS = {  # what is written: the command, without its output; it comes last
     "map.h5": [PROGRAM, *MAP, "-o"],
     "motion.vtkhdf": [PROGRAM, "run", "a.cfg", "--frames", "3000", "--record", "particles", "-o"],
     "mesh.obj": [PROGRAM, "scenes", "penguin", "--write-mesh"],
-    "merged.h5": [PROGRAM, "merge", "OUTPUT", "kept-sweep.h5"],
     "compared.json": [PROGRAM, "regress", "--baseline", "kept-rows.h5", "--scene", "a.cfg", "--rounds", "1", "--format", "json", "-o"],
     "page.html": [PROGRAM, "report", "kept-rows.h5", "-o"],
     "folder": [PROGRAM, "report", "kept-rows.h5", "-o"],

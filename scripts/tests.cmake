@@ -180,6 +180,7 @@ if(NOT SHAPEBENCH_SANITIZE AND NOT SHAPEBENCH_CORE)
   endforeach()
   add_script_test(dockerfile test_dockerfile.sh)
   add_script_test(ci_example test_ci_example.py $<TARGET_FILE:shapebench>)
+  add_script_test(export test_export.py $<TARGET_FILE:shapebench>)
   add_script_test(render test_render.sh $<TARGET_FILE:shapebench>)
   foreach(what brute_force damage writers scenes) # more on request: --particles, --rounds, --seconds
     add_script_test(${what} test_${what}.py $<TARGET_FILE:shapebench>)

@@ -121,29 +121,6 @@ TEST(an_interrupted_calibration_goes_on)
     bench_campaign_free(&part);
 }
 
-/* As three tasks of a job array. */
-TEST(shards_merge_to_the_whole)
-{
-    setenv("SLURM_ARRAY_TASK_COUNT", "3", 1);
-    setenv("SLURM_ARRAY_TASK_MIN", "5", 1);
-    runs(SMALL " --shard 3/3 -o three.h5");
-    setenv("SLURM_ARRAY_TASK_ID", "5", 1);
-    runs(SMALL " --shard auto -o one.h5");
-    setenv("SLURM_ARRAY_TASK_ID", "6", 1);
-    runs(SMALL " --shard auto -o two.h5");
-    runs("merge some.h5 three.h5 one.h5");
-    assert_string_equal(result.out, "some.h5: 3 of 4 specimens\n"
-                                    "missing: 1, the first fastlsm with w 2, epsilon 0, 2 cells "
-                                    "thick\n");
-    runs("merge all.h5 three.h5 one.h5 two.h5");
-    assert_string_equal(result.out, "all.h5: 4 of 4 specimens\n");
-    equals_whole("all.h5");
-    runs("calibrate some.h5");
-    run("merge --overwrite all.h5 one.h5 noise.h5", &result);
-    assert_int_equal(result.code, 3);
-    equals_whole("all.h5");
-}
-
 /* Two ranks do the same as one. */
 TEST(ranks_share_the_work)
 {
@@ -295,8 +272,7 @@ TEST(mistakes_are_one_line)
         {"calibrate --scene penguin", 3, "its body is no beam"},
         {"calibrate --scene block", 3, "its body is no beam"},
         {"calibrate --scene fine.cfg", 3, "its beam is 100 cells thick; 1 to 64 can be"},
-        {"calibrate --shard 0/2", 2, "--shard: '0/2' is not I/N"},
-        {"calibrate whole.h5 --shard 1/2", 2, "whole.h5 alone is shown as it is"},
+        {"calibrate whole.h5 --resume", 2, "whole.h5 alone is shown as it is"},
         {"calibrate a.h5 b.h5", 2, "what is 'b.h5'?"},
         {"calibrate whole.h5 --w 3", 2, "whole.h5 alone is shown as it is"},
         {"calibrate whole.h5 -o x.h5", 2, "whole.h5 alone is shown as it is"},

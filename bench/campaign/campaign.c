@@ -160,49 +160,6 @@ bool bench_campaign_same(const BenchCampaign *mine, const BenchCampaign *theirs,
     return !differs;
 }
 
-static bool same_point(const BenchCampaignType *type, const void *a, const void *b)
-{
-    if (bench_record_differs(type->points, *type->point_fields, a, b, false)) return false;
-    if (!type->pack) return true;
-    size_t left, right;
-    char *one = type->pack(a, &left), *other = type->pack(b, &right);
-    bool same = left == right && !memcmp(one, other, left);
-    free(one);
-    free(other);
-    return same;
-}
-
-SmCode bench_campaign_merge(BenchCampaign *into, BenchCampaign *from, const char *path,
-                            SmError *error)
-{
-    const BenchCampaignType *type = into->type;
-    char what[BENCH_CAMPAIGN_TEXT];
-    if (from->type != type)
-        return sm_fail(error, SM_INPUT, "%.200s is a file of '%s', and those before it of '%s'",
-                       path, from->type->command, type->command);
-    if (!bench_campaign_same(into, from, sizeof what, what))
-        return sm_fail(error, SM_INPUT, "%.200s is of another %s: %s", path, type->name, what);
-    long kept = 0;
-    SmCode code = SM_OK;
-    for (long i = 0; i < from->count; i++) {
-        void *point = bench_campaign_at(from, i);
-        const void *there = bench_campaign_find(into, *(int *)point);
-        if (!code && !there) {
-            bench_campaign_add(into, point);
-            continue;
-        }
-        memmove(bench_campaign_at(from, kept++), point, type->point_size);
-        if (code || same_point(type, there, point)) continue;
-        type->say(point, sizeof what, what);
-        code = sm_fail(error, SM_INPUT,
-                       "%.200s: its %s %d (%s) was measured twice, here and in a file before it, "
-                       "and the two differ: leave one file out",
-                       path, type->point, *(int *)point, what);
-    }
-    from->count = kept;
-    return code;
-}
-
 SmCode bench_campaign_verdict(const BenchCampaign *campaign, SmError *error)
 {
     const BenchCampaignType *type = campaign->type;
@@ -362,34 +319,11 @@ static void read_points(BenchH5 *h5, BenchCampaign *campaign)
     check_points(h5, campaign);
 }
 
-/* What is to be loaded, and where to. */
-typedef struct {
-    const BenchCampaignType *const *types; /* that it may be of */
-    BenchCampaign *campaign;
-} Load;
-
-/* The type of the file; or, where it is of none, the first. */
-static const BenchCampaignType *type_of(BenchH5 *h5, const BenchCampaignType *const *types)
-{
-    char found[64] = "", kind[64];
-    if (!types[1]) return types[0];
-    bench_h5_read_text(h5, h5->file, "kind", sizeof found, found);
-    for (const BenchCampaignType *const *type = types; *type; type++) {
-        snprintf(kind, sizeof kind, "shapebench %s", (*type)->name);
-        if (!strcmp(found, kind)) return *type;
-    }
-    bench_h5_fail(h5, "it is HDF5, but no file of a sweep, a calibration or claims");
-    return types[0];
-}
-
 static void read_file(BenchH5 *h5, void *record)
 {
-    const Load *load = record;
-    const BenchCampaignType *type = type_of(h5, load->types);
-    BenchCampaign *campaign = load->campaign;
+    BenchCampaign *campaign = record;
+    const BenchCampaignType *type = campaign->type;
     char kind[64];
-    *campaign = bench_campaign_create(type);
-    if (h5->failed) return;
     snprintf(kind, sizeof kind, "shapebench %s", type->name);
     bench_h5_check_kind(h5, kind, type->schema, type->schema);
     bench_machine_load(h5, &campaign->machine);
@@ -398,20 +332,13 @@ static void read_file(BenchH5 *h5, void *record)
     if (!h5->failed && type->read) type->read(h5, campaign);
 }
 
-SmCode bench_campaign_load_any(const char *path, const BenchCampaignType *const *types,
-                               BenchCampaign *campaign, SmError *error)
-{
-    *campaign = (BenchCampaign){0};
-    SmCode code = bench_h5_load(path, read_file, &(Load){types, campaign}, error);
-    if (code) bench_campaign_free(campaign);
-    return code;
-}
-
 SmCode bench_campaign_load(const char *path, const BenchCampaignType *type, BenchCampaign *campaign,
                            SmError *error)
 {
-    const BenchCampaignType *const types[] = {type, NULL};
-    return bench_campaign_load_any(path, types, campaign, error);
+    *campaign = bench_campaign_create(type);
+    SmCode code = bench_h5_load(path, read_file, campaign, error);
+    if (code) bench_campaign_free(campaign);
+    return code;
 }
 
 /* ---- provenance */

@@ -1,5 +1,5 @@
 /* campaign.h - a plan of points, each of which is measured and checked, stored as it ends, and so
- * can be gone on with, divided among machines and merged. A sweep (sweep.h), a calibration
+ * can be gone on with. A sweep (sweep.h), a calibration
  * (calibration.h) and the experiments of claims (experiments.h) are three; each describes itself
  * by a BenchCampaignType. campaign_run.h measures one. */
 #ifndef BENCH_CAMPAIGN_H
@@ -107,7 +107,7 @@ typedef struct {
 struct BenchCampaign {
     const BenchCampaignType *type;
     void *plan;           /* of type->plan_size */
-    BenchMachine machine; /* where and how it was begun, or merged */
+    BenchMachine machine; /* where and how it was begun */
     long count;           /* of points that are finished, by rising index */
     void *point;          /* [count] of type->point_size */
 };
@@ -143,18 +143,11 @@ bool bench_campaign_same(const BenchCampaign *mine, const BenchCampaign *theirs,
 /* Concludes and writes all of it: the file appears whole or not at all (draft.h). */
 SmCode bench_campaign_store(const char *path, BenchCampaign *campaign, SmError *error);
 
-/* Reads a file of this kind, or of any of several, NULL at the end; the caller frees the campaign.
+/* Reads a file of this kind; the caller frees the campaign.
  * SM_INPUT: no such file, not HDF5, cut off, of another kind or schema, something missing, of a
  * wrong size, or beside the plan. */
 SmCode bench_campaign_load(const char *path, const BenchCampaignType *type, BenchCampaign *campaign,
                            SmError *error);
-SmCode bench_campaign_load_any(const char *path, const BenchCampaignType *const *types,
-                               BenchCampaign *campaign, SmError *error);
-
-/* Moves the points of `from` (read from `path`) to `into`. A point that is in both must be the same
- * to the last bit. SM_INPUT: it is not, or the plans differ. */
-SmCode bench_campaign_merge(BenchCampaign *into, BenchCampaign *from, const char *path,
-                            SmError *error);
 
 /* SM_INVALID, with how many and the first one, where points are not valid. */
 SmCode bench_campaign_verdict(const BenchCampaign *campaign, SmError *error);

@@ -24,63 +24,6 @@ typedef struct {
     SmError failed; /* of another rank; code SM_OK: none */
 } Job;
 
-/* ---- shards */
-
-/* Of the environment: a whole number from `low` on. */
-static SmCode slurm_number(const char *name, long low, long *number, SmError *error)
-{
-    const char *text = getenv(name);
-    char *end = NULL;
-    if (!text)
-        return sm_fail(error, SM_USAGE,
-                       "--shard auto: %s is not set: it works in a job array of Slurm (sbatch "
-                       "--array=1-N); elsewhere give --shard I/N",
-                       name);
-    *number = strtol(text, &end, 10);
-    if (end != text && !*end && *number >= low && *number <= 100000000) return SM_OK;
-    return sm_fail(error, SM_USAGE, "--shard auto: %s is '%.40s', no whole number from %ld on",
-                   name, text, low);
-}
-
-static SmCode slurm_shard(int *shard, int *shards, SmError *error)
-{
-    long id = 0, count = 0, least = 0, step = 1;
-    SmCode code = slurm_number("SLURM_ARRAY_TASK_ID", 0, &id, error);
-    if (!code) code = slurm_number("SLURM_ARRAY_TASK_COUNT", 1, &count, error);
-    if (!code && getenv("SLURM_ARRAY_TASK_MIN"))
-        code = slurm_number("SLURM_ARRAY_TASK_MIN", 0, &least, error);
-    if (!code && getenv("SLURM_ARRAY_TASK_STEP"))
-        code = slurm_number("SLURM_ARRAY_TASK_STEP", 1, &step, error);
-    if (code) return code;
-    long number = (id - least) / step + 1;
-    if (id < least || (id - least) % step || number > count || count > BENCH_CAMPAIGN_POINTS)
-        return sm_fail(error, SM_USAGE,
-                       "--shard auto: task %ld is none of %ld in even steps of %ld from %ld on, at "
-                       "most %d: give the array as --array=1-N%s",
-                       id, count, step, least, BENCH_CAMPAIGN_POINTS,
-                       getenv("SLURM_ARRAY_TASK_MIN")
-                           ? ""
-                           : ", and the first task's number in SLURM_ARRAY_TASK_MIN, without which "
-                             "it is 0");
-    *shard = (int)number;
-    *shards = (int)count;
-    return SM_OK;
-}
-
-SmCode bench_shard_parse(const char *text, int *shard, int *shards, SmError *error)
-{
-    char end;
-    *shard = *shards = 1;
-    if (!text) return SM_OK;
-    if (!strcmp(text, "auto")) return slurm_shard(shard, shards, error);
-    if (sscanf(text, "%d/%d%c", shard, shards, &end) == 2 && *shard >= 1 &&
-        *shards <= BENCH_CAMPAIGN_POINTS && *shard <= *shards)
-        return SM_OK;
-    return sm_fail(error, SM_USAGE,
-                   "--shard: '%.40s' is not I/N with I from 1 to N, and N at most %d, nor auto",
-                   text, BENCH_CAMPAIGN_POINTS);
-}
-
 /* ---- the file */
 
 static bool goes_on(const BenchCampaignRun *run, const BenchCampaignType *type)
@@ -247,11 +190,10 @@ static SmCode check_rank(const BenchCampaign *mine, void *plan, SmError *error)
 
 /* ---- all of it */
 
-static int find_pending(const BenchCampaign *campaign, int shard, int shards, const bool *done,
-                        int *pending)
+static int find_pending(const BenchCampaign *campaign, const bool *done, int *pending)
 {
     int count = 0, planned = bench_campaign_planned(campaign);
-    for (int i = shard - 1; i < planned; i += shards)
+    for (int i = 0; i < planned; i++)
         if (!done[i]) pending[count++] = i;
     return count;
 }
@@ -274,7 +216,7 @@ static SmCode prepare(Job *job, Start *start, SmError *error)
     return code;
 }
 
-static SmCode share_out(Job *job, int shard, int shards, SmError *error)
+static SmCode share_out(Job *job, SmError *error)
 {
     const BenchCampaignRun *run = job->run;
     BenchCampaign *campaign = job->campaign;
@@ -287,7 +229,7 @@ static SmCode share_out(Job *job, int shard, int shards, SmError *error)
     bench_ranks_share(run->ranks, start, (int)size);
     if (!code && run->ranks->rank > 0) code = mine.code = check_rank(campaign, start + 1, &mine);
     if (!start->code) {
-        int count = find_pending(campaign, shard, shards, start->done, pending);
+        int count = find_pending(campaign, start->done, pending);
         if (run->ranks->rank > 0) {
             serve(job, pending, count, &mine);
         } else {
@@ -307,9 +249,7 @@ static SmCode share_out(Job *job, int shard, int shards, SmError *error)
 SmCode bench_campaign_run(const BenchCampaignRun *run, BenchCampaign *campaign, SmError *error)
 {
     Job job = {.run = run, .campaign = campaign, .left = run->ranks->count - 1};
-    int shard, shards;
-    SmCode code = bench_shard_parse(run->shard, &shard, &shards, error);
-    if (!code) code = share_out(&job, shard, shards, error);
+    SmCode code = share_out(&job, error);
     bench_interrupt_say(NULL);
     if (job.work) campaign->type->end(job.work);
     return code;

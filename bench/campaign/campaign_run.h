@@ -1,6 +1,5 @@
 /* campaign_run.h - runs a campaign: goes on with the file that there is, measures what is missing,
- * alone, as one of several shards, or with the other ranks of an MPI launch, and stores after every
- * point. */
+ * alone or with the other ranks of an MPI launch, and stores after every point. */
 #ifndef BENCH_CAMPAIGN_RUN_H
 #define BENCH_CAMPAIGN_RUN_H
 
@@ -10,7 +9,6 @@
 
 struct BenchCampaignRun {
     const char *output;     /* or NULL: nothing is stored */
-    const char *shard;      /* "I/N": of every N points the one number I, from 1; "auto" */
     bool resume, overwrite; /* of a type that asks: what to do with a file that is there */
     bool columns, list;     /* nothing is run: the file's columns, or the plan, are listed */
     bool quiet;             /* no progress and no remarks */
@@ -22,13 +20,8 @@ struct BenchCampaignRun {
  * rank 0, which alone reads and writes the file; a rank that cannot go on says so, and the others
  * finish theirs.
  *
- * SM_USAGE: the shard is none. SM_INPUT: the points cannot be measured, or the file is of another
+ * SM_INPUT: the points cannot be measured, or the file is of another
  * campaign. SM_OUTPUT: it cannot be written; what was stored before stays. */
 SmCode bench_campaign_run(const BenchCampaignRun *run, BenchCampaign *campaign, SmError *error);
-
-/* "I/N" with I from 1 to N; "auto": of a Slurm job array (SLURM_ARRAY_TASK_ID and _COUNT; without
- * _MIN, which Slurm sets, the first task is 0, without _STEP the next one 1); NULL: 1/1. SM_USAGE:
- * it is neither. */
-SmCode bench_shard_parse(const char *text, int *shard, int *shards, SmError *error);
 
 #endif

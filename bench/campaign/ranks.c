@@ -44,7 +44,7 @@ static SmCode join(BenchRanks *ranks, long count, SmError *error)
     if (ranks->count == count || count == 1) return SM_OK;
     return sm_fail(error, SM_USAGE,
                    "started as one of %ld processes by another MPI than the one that it was built "
-                   "with: use that one's mpirun, or --shard",
+                   "with: use that one's mpirun",
                    count);
 }
 
@@ -94,7 +94,7 @@ static SmCode join(BenchRanks *ranks, long count, SmError *error)
     if (count <= 1) return SM_OK;
     return sm_fail(error, SM_USAGE,
                    "started as one of %ld processes, but built without MPI: install libopenmpi-dev "
-                   "and build again, or use --shard",
+                   "and build again",
                    count);
 }
 

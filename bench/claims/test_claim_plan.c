@@ -1,4 +1,4 @@
-/* Claims as a user runs them: whole, interrupted, in shards, on several ranks; and mistakes. */
+/* Claims as a user runs them: whole, interrupted, on several ranks; and mistakes. */
 #define _GNU_SOURCE
 #include <signal.h>
 #include <unistd.h>
@@ -121,22 +121,6 @@ TEST(interrupted_claims_go_on)
     assert_non_null(strstr(result.out, "mine,few,"));
 }
 
-TEST(shards_merge_to_the_whole)
-{
-    runs("claims --claims own.cfg --paper mine --quick --shard 1/3 -o one.h5", 1);
-    assert_non_null(strstr(result.err, "2 of 5 experiments are there: 3 of 5 claims wait"));
-    runs(OWN " --shard 2/3 -o two.h5", 0);
-    runs(OWN " --shard 3/3 -o three.h5", 0);
-    runs("merge some.h5 three.h5 one.h5", 0);
-    assert_string_equal(result.out, "some.h5: 3 of 5 experiments\n"
-                                    "missing: 2, the first blending.rigid.n2-3.2\n");
-    runs("merge all.h5 three.h5 one.h5 two.h5 one.h5", 0);
-    assert_string_equal(result.out, "all.h5: 5 of 5 experiments\n");
-    equals_whole("all.h5");
-    runs("merge twice.h5 one.h5 whole.h5", 3);
-    assert_non_null(strstr(result.err, "was measured twice"));
-}
-
 /* Two ranks do the same as one. */
 TEST(ranks_share_the_work)
 {
@@ -153,12 +137,10 @@ TEST(mistakes_are_one_line)
         {OWN " --resume --seed 5 -o whole.h5", 3,
          "whole.h5 holds other claims: its seed is 1, and here 5"},
         {OWN " --resume --claim few -o whole.h5", 3, "holds other claims: its claims_hash differs"},
-        {OWN " --shard 4/3", 2, "--shard: '4/3' is not I/N"},
-        {"claims whole.h5 --quick --shard 1/2", 2, "whole.h5 alone is shown as it is"},
+        {"claims whole.h5 --quick --resume", 2, "whole.h5 alone is shown as it is"},
         {"claims whole.h5 --overwrite", 2, "whole.h5 alone is shown as it is"},
         {"claims own.cfg", 3, "own.cfg: not an HDF5 file"},
         {"sweep whole.h5", 3, "not a shapebench sweep file"},
-        {"merge new.h5 own.cfg", 3, "own.cfg: not an HDF5 file"},
     };
     make_mistakes(cases, sizeof cases / sizeof cases[0]);
     equals_whole("whole.h5");

@@ -49,12 +49,6 @@ typedef struct {
 #define BENCH_CAMPAIGN_OPTIONS(record, place, point, stored)                                       \
     {BENCH_MEASURE("output", "FILE.h5", place, stored " (default: nothing stored)"),               \
      BENCH_IN(record, its.run.output), .letter = 'o'},                                             \
-        {BENCH_MEASURE("shard", "I/N|auto", place,                                                 \
-                       "Measure only every N-th " point                                            \
-                       ", from the I-th on; auto: those of a task of a Slurm job array "           \
-                       "(SLURM_ARRAY_TASK_ID and _COUNT, counted from _MIN, or 0 without it); "    \
-                       "put the files together with 'merge'"),                                     \
-         BENCH_IN(record, its.run.shard)},                                                         \
         {BENCH_OPTION("columns", NULL, place,                                                      \
                       "Measure nothing; list what FILE.h5 has, as results/README.md does"),        \
          BENCH_IN(record, its.run.columns)},                                                       \
@@ -73,7 +67,7 @@ typedef struct {
 
     /* Does it; argv[0] is "shapebench NAME". Returns the exit code; what `error` says is printed.
      * NULL of a command that is a campaign (campaign.h): what it shows is measured by its options,
-     * alone, as a shard or by the ranks of an MPI launch, or read from the file that it is given.
+     * alone or by the ranks of an MPI launch, or read from the file that it is given.
      */
     SmCode (*perform)(void *options, int argc, char **argv, SmError *error);
     const BenchCampaignType *campaign;
@@ -91,7 +85,6 @@ int bench_command_run(const BenchCommand *command, int argc, char **argv);
 
 extern const BenchCommand bench_command_scenes, bench_command_info, bench_command_simulate,
     bench_command_tables, bench_command_regress, bench_command_history, bench_command_kernels,
-    bench_command_report, bench_command_sweep, bench_command_calibrate, bench_command_merge,
-    bench_command_claims;
+    bench_command_report, bench_command_sweep, bench_command_calibrate, bench_command_claims;
 
 #endif

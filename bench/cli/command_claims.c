@@ -166,7 +166,7 @@ static SmCode verdict(const BenchFinding *findings, int count, SmError *error)
                    findings[first].words);
 }
 
-/* A shard alone, and what was interrupted, has not all experiments of all claims. */
+/* What was interrupted has not all experiments of all claims. */
 static void remark(const Options *options, const BenchCampaign *campaign, int found)
 {
     const BenchClaimsPlan *plan = campaign->plan;

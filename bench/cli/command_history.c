@@ -34,8 +34,6 @@ static void check(const struct argp_state *state, void *record)
     const Options *options = record;
     if (!options->common.words)
         bench_usage(state, "which FILE? 'shapebench tables -o FILE.h5' makes one");
-    if (options->by == BY_CYCLES && options->format == BENCH_HISTORY_GBENCH)
-        bench_usage(state, "--by cycles: gbench has times alone");
 }
 
 static const char help[] =
@@ -47,9 +45,7 @@ static const char help[] =
     "E-divisive (Matteson and James 2014), with permutation tests at 0.01, in ten files of a scene "
     "or "
     "more; 'report' draws them.\v"
-    "bencher and gbench are of the newest file alone: Bencher's metric format (bencher run "
-    "--adapter "
-    "json), median and quartiles, and Google Benchmark's JSON with every repeat. Two files are set "
+    "Two files are set "
     "side by side by 'regress OLD.h5 NEW.h5'.\n" BENCH_EXIT_CODES;
 
 static void print_found(FILE *file, const void *what)

@@ -78,7 +78,7 @@ static const BenchSetting settings[] = {
                   "that cannot be read, with --revision, instructions by Valgrind"),
      BENCH_IN(Options, counters)},
     {BENCH_OPTION("counts", NULL, 2, "The same"), BENCH_IN(Options, counters)},
-    {BENCH_OPTION("format", "FORMAT", 3, "text, markdown, json, junit or gbench (default: text)"),
+    {BENCH_OPTION("format", "FORMAT", 3, "text, markdown or json (default: text)"),
      BENCH_IN(Options, format), BENCH_CHOICES(bench_regression_formats)},
     {BENCH_OUTPUT_OPTION("FILE", 3, "Write there (default: standard output)"),
      BENCH_IN(Options, output)},
@@ -97,8 +97,6 @@ static void check(const struct argp_state *state, void *record)
     if (files && (options->rounds || options->repeats || options->block > 0))
         bench_usage(state, "--rounds, --repeats and --block say how to measure: files are compared "
                            "as they are");
-    if (options->by == BY_CYCLES && options->format == BENCH_REGRESSION_GBENCH)
-        bench_usage(state, "--by cycles: gbench has times alone");
     if ((options->baseline || files) && options->paper)
         bench_usage(state, "--paper: a file has its own scenes; choose of them with --scene");
 }

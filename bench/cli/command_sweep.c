@@ -73,7 +73,7 @@ static const char help[] =
     "regions hold as much on average (a lattice is its own full resolution). Stiffness is that of "
     "a regularly sampled beam with the same w and epsilon. The scene's cuts, touches, plasticity "
     "and further instances are left out.\n"
-    "Started by mpirun, all ranks measure and the first one stores. Points of ranks and shards "
+    "Started by mpirun, all ranks measure and the first one stores. Points of ranks "
     "that share a machine disturb each other's times; each keeps its host and "
     "rank.\n" BENCH_EXIT_CODES;
 

@@ -72,7 +72,6 @@ TEST(mistyped_words_get_a_suggestion)
         {"tables --sceen=penguin", 2, "did you mean '--scene'?"},
         {"run tiny.cfg --trheads 2", 2, "did you mean '--threads'?"},
         {"run pengiun", 2, "did you mean 'penguin'? See 'shapebench run --help'"},
-        {"merge --seed 2 a.h5 b.h5", 2, "unrecognized option '--seed'"}, /* it would be ignored */
         {"scenes --quiet", 2, "unrecognized option '--quiet'"},
         {"report --threads 2 a.h5", 2, "unrecognized option '--threads'"},
         {"penguin", 2, "unknown command 'penguin'; did you mean 'run penguin'?"},
@@ -216,8 +215,8 @@ TEST(mistakes_of_other_commands_are_too)
 
 TEST(help_is_everywhere)
 {
-    static const char *const commands[] = {"",      "run",   "tables",    "info",
-                                           "sweep", "merge", "calibrate", "scenes"};
+    static const char *const commands[] = {"",      "run",       "tables", "info",
+                                           "sweep", "calibrate", "scenes"};
     for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
         char arguments[64];
         Result result;

@@ -39,7 +39,7 @@ TEST(commands_and_their_options_are_those_of_the_help)
 {
     Result commands, help, options;
     complete("''", &commands);
-    assert_int_equal(lines_of(&commands), 13);
+    assert_int_equal(lines_of(&commands), 12);
     for (char *name = strtok(commands.out, "\n"), *next; name; name = next) {
         next = strtok(NULL, "\n");
         char words[160];
@@ -73,7 +73,7 @@ TEST(values_are_offered_after_an_option_or_its_equals_sign)
     expect_offer("kernels --only ''", "polar");
     expect_offer("claims --claim ''", "stiffness");
     expect_offer("claims --paper o", "octree");
-    expect_offer("regress --format g", "gbench");
+    expect_offer("regress --format j", "json");
     expect_offer("regress --by c", "cycles");
     Result result;
     complete("run hand --threads ''", &result); /* a number: nothing to offer */

@@ -59,25 +59,16 @@ SmCode bench_history_read(const char *const *path, int files, bool by_cycles, un
                           BenchHistory *history, SmError *error);
 void bench_history_free(BenchHistory *history);
 
-typedef enum {
-    BENCH_HISTORY_TEXT,
-    BENCH_HISTORY_MARKDOWN,
-    BENCH_HISTORY_JSON,
-    BENCH_HISTORY_BENCHER,
-    BENCH_HISTORY_GBENCH
-} BenchHistoryFormat;
+typedef enum { BENCH_HISTORY_TEXT, BENCH_HISTORY_MARKDOWN, BENCH_HISTORY_JSON } BenchHistoryFormat;
 
-/* "text", "markdown", "json", "bencher", "gbench", NULL. */
+/* "text", "markdown", "json", NULL. */
 extern const char *const bench_history_formats[];
 
 /* Writes it.
  * json: {"schema": 1, "by", "files": [{"file", "utc", "commit", "dirty"}], "series": [{"scene",
  *   "engine", "precision", "threads", "points": [{"file": its place, "value", "low", "high"}],
  *   "changes": [{"point": the first after it, "p", "ratio", "low", "high"}]}], "marks": [{"file",
- *   "what", "old", "new"}]}
- * bencher: Bencher's metric format, of the newest file alone: {"SCENE": {"latency": {"value",
- *   "lower_value", "upper_value"}, "cycles": ...}}, in ns, median and quartiles.
- * gbench: Google Benchmark's JSON of the newest file, every repeat a repetition of "SCENE/TIME". */
+ *   "what", "old", "new"}]} */
 void bench_history_write(FILE *file, BenchHistoryFormat format, const BenchHistory *history);
 
 #endif

@@ -4,13 +4,11 @@
 #include <string.h>
 
 #include "../../lib/printable.h"
-#include "../regress/ab_samples.h"
 #include "../store/export.h"
-#include "../table/gbench.h"
 #include "../table/grid.h"
 #include "history.h"
 
-const char *const bench_history_formats[] = {"text", "markdown", "json", "bencher", "gbench", NULL};
+const char *const bench_history_formats[] = {"text", "markdown", "json", NULL};
 
 /* ---- for people */
 
@@ -150,64 +148,6 @@ static void write_json(FILE *file, const BenchHistory *history)
                                      "series", series, "marks", marks));
 }
 
-static json_t *metric_json(double value, double low, double high)
-{
-    return json_pack("{s:o, s:o, s:o}", "value", bench_json_number(value), "lower_value",
-                     bench_json_number(low), "upper_value", bench_json_number(high));
-}
-
-/* The scene; of further rows of it also what tells them apart, in the end a number. */
-static void name_metric(const json_t *root, const BenchRow *row, size_t size, char *name)
-{
-    snprintf(name, size, "%s", row->scene);
-    if (json_object_get(root, name)) sm_append(name, size, " (%s)", row->engine);
-    if (json_object_get(root, name)) sm_append(name, size, " (%s)", row->precision);
-    size_t length = strlen(name);
-    for (int n = 2; json_object_get(root, name); n++)
-        snprintf(name + length, size - length, " (%d)", n);
-}
-
-static void write_bencher(FILE *file, const BenchHistory *history)
-{
-    json_t *root = json_object();
-    for (int s = 0; s < history->count; s++) {
-        const BenchHistoryPoint *point = &history->series[s].point[history->series[s].points - 1];
-        char name[160];
-        if (point->file != history->files - 1) continue;
-        name_metric(root, point->row, sizeof name, name);
-        json_t *measures = json_object();
-        double unit = history->by_cycles ? 1 : 1e6;
-        json_object_set_new(
-            measures, history->by_cycles ? "cycles" : "latency",
-            metric_json(unit * point->value, unit * point->low, unit * point->high));
-        json_object_set_new(root, name, measures);
-    }
-    bench_json_write(file, root);
-}
-
-static void write_gbench(FILE *file, const BenchHistory *history)
-{
-    const BenchHistoryFile *newest = &history->file[history->files - 1];
-    BenchAbSamples all = {0};
-    json_t *list = json_array();
-    int family = 0;
-    for (int r = 0; r < newest->rows; r++)
-        if (bench_row_timed(&newest->row[r]))
-            bench_ab_add_repeats(&all, BENCH_NEW, &newest->row[r]);
-    for (int s = 0; s < all.count; s++)
-        for (int v = 0; v < BENCH_TIMES; v++) {
-            const BenchSide *side = &all.scenes[s].side[BENCH_NEW];
-            char name[160];
-            if (!bench_side_has(side, v)) continue;
-            snprintf(name, sizeof name, "%s/%s", all.scenes[s].scene,
-                     bench_value_name(&all.scenes[s], v));
-            bench_gbench_add(list, name, family++, side->value[v], side->count, side->row.steps,
-                             side->row.threads);
-        }
-    bench_gbench_write(file, &newest->machine, list);
-    bench_ab_free(&all);
-}
-
 void bench_history_write(FILE *file, BenchHistoryFormat format, const BenchHistory *history)
 {
     switch (format) {
@@ -217,12 +157,6 @@ void bench_history_write(FILE *file, BenchHistoryFormat format, const BenchHisto
         break;
     case BENCH_HISTORY_JSON:
         write_json(file, history);
-        break;
-    case BENCH_HISTORY_BENCHER:
-        write_bencher(file, history);
-        break;
-    case BENCH_HISTORY_GBENCH:
-        write_gbench(file, history);
         break;
     }
 }

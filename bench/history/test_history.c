@@ -112,69 +112,13 @@ TEST(json_has_all_that_is_drawn)
     json_decref(root);
 }
 
-/* Rows of a scene that are of other work have a name each. */
-TEST(no_row_takes_anothers_name)
-{
-    static const char *const names[] = {"tiny", "tiny (brute)", "tiny (brute) (single)",
-                                        "tiny (brute) (single) (2)"};
-    BenchRow row[4];
-    Result result;
-    SmError error;
-    double value;
-    for (int r = 0; r < 4; r++) {
-        row[r] = rows[0];
-        row[r].total_ms = 1 + r;
-        row[r].particles += r == 3;
-        strcpy(row[r].precision, r < 2 ? "double" : "single");
-        row[r].threads = r == 1 ? 2 : 1;
-    }
-    assert_int_equal(bench_store_rows(path_in("four.h5"), row, 4, &machine, &error), SM_OK);
-    run("history four.h5 --format bencher", &result);
-    json_t *root = json_loads(result.out, 0, NULL);
-    assert_int_equal(json_object_size(root), 4);
-    for (int r = 0; r < 4; r++) {
-        assert_int_equal(json_unpack(root, "{s:{s:{s:F}}}", names[r], "latency", "value", &value),
-                         0);
-        assert_true(fabs(value - 1e6 * (1 + r)) < 1);
-    }
-    json_decref(root);
-}
-
-/* The newest alone, in nanoseconds. */
-TEST(exports_are_of_the_newest_file)
-{
-    Result result;
-    double value, low, high, time, wanted = 1.2e6 * (1 + 1e-3 * (7919 * FILES % 17 - 8));
-    run("history d*.h5 --format bencher", &result);
-    json_t *root = json_loads(result.out, 0, NULL);
-    assert_int_equal(json_object_size(root), 1);
-    assert_int_equal(json_unpack(root, "{s:{s:{s:F, s:F, s:F}}}", "tiny", "latency", "value",
-                                 &value, "lower_value", &low, "upper_value", &high),
-                     0);
-    assert_true(fabs(value / wanted - 1) < 1e-3 && low < value && value < high);
-    json_decref(root);
-    run("history d*.h5 --format gbench", &result);
-    root = json_loads(result.out, 0, NULL);
-    const char *name, *date, *unit;
-    assert_int_equal(json_unpack(root, "{s:{s:s}, s:[{s:s, s:F, s:s}]}", "context", "date", &date,
-                                 "benchmarks", "name", &name, "real_time", &time, "time_unit",
-                                 &unit),
-                     0);
-    assert_string_equal(name, "tiny/total");
-    assert_string_equal(date, "2026-03-16T10:00:00Z");
-    assert_string_equal(unit, "ns");
-    assert_true(fabs(time / wanted - 1) < 1e-3);
-    json_decref(root);
-}
-
 TEST(mistakes_are_named)
 {
     expect("history", 2, "which FILE?");
     expect("history none.h5", 3, "none.h5");
     expect("history tiny.cfg", 3, "not an HDF5 file");
-    expect("history d01.h5 --format pdf", 2, "not one of text, markdown, json, bencher, gbench");
+    expect("history d01.h5 --format pdf", 2, "not one of text, markdown, json");
     expect("history d01.h5 -o d02.h5", 4, "d02.h5");
-    expect("history d01.h5 --by cycles --format gbench", 2, "gbench has times alone");
     rows[0].particles++;
     store("other.h5", 17, 3); /* other work: a series of its own */
     rows[0].particles--;

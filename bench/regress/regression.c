@@ -10,11 +10,9 @@
 #include "../../lib/printable.h"
 #include "../store/export.h"
 #include "../system/statistic.h"
-#include "../table/gbench.h"
 #include "../table/grid.h"
 
-const char *const bench_regression_formats[] = {"text",  "markdown", "json",
-                                                "junit", "gbench",   NULL};
+const char *const bench_regression_formats[] = {"text", "markdown", "json", NULL};
 
 void bench_regression_remark(BenchRegression *found, const char *format, ...)
 {
@@ -247,7 +245,7 @@ static void write_text(FILE *file, const BenchRegression *found, bool markdown)
     fprintf(file, markdown ? "\n**%s**\n" : "%s\n", line);
 }
 
-/* ---- JSON, and Google Benchmark's */
+/* ---- JSON */
 
 /* One build's part of a comparison. */
 static json_t *side_json(const BenchComparison *one, BenchBuild build)
@@ -308,86 +306,6 @@ static void write_json(FILE *file, const BenchRegression *found)
                         "new", bench_json_machine(&found->machine[BENCH_NEW])));
 }
 
-static void write_gbench(FILE *file, const BenchRegression *found)
-{
-    static const char *const prefix[] = {"old", "new"};
-    json_t *list = json_array();
-    for (int b = 0; b < BENCH_BUILDS; b++)
-        for (int i = 0; i < found->count; i++) {
-            const BenchComparison *one = &found->list[i];
-            const BenchSide *side = &one->samples->side[b];
-            char name[160];
-            if (one->verdict == BENCH_INCORRECT || one->verdict == BENCH_NO_BASELINE) continue;
-            snprintf(name, sizeof name, "%s/%s/%s", prefix[b], one->samples->scene,
-                     bench_value_name(one->samples, one->value));
-            bench_gbench_add(list, name, b * found->count + i, side->value[one->value], side->count,
-                             side->row.steps, side->row.threads);
-        }
-    bench_gbench_write(file, &found->machine[BENCH_NEW], list);
-}
-
-/* ---- JUnit */
-
-/* What the verdict is to JUnit; NULL: passed. */
-static const char *junit_element(BenchComparisonVerdict verdict)
-{
-    if (verdict == BENCH_SLOWER) return "failure";
-    if (verdict == BENCH_INCORRECT) return "error";
-    return verdict == BENCH_SAME || verdict == BENCH_FASTER ? NULL : "skipped";
-}
-
-static void write_case(FILE *file, const BenchComparison *one)
-{
-    char line[320];
-    const char *name = junit_element(one->verdict);
-    double seconds = isfinite(one->amount[BENCH_NEW]) && one->value < BENCH_TIMES
-                         ? 1e-3 * one->amount[BENCH_NEW]
-                         : 0;
-    if (one->reason[0])
-        snprintf(line, sizeof line, "%s", one->reason);
-    else
-        snprintf(line, sizeof line,
-                 "%s: %.4f times (%.4f to %.4f), threshold %.1f%%, p %.3g adjusted",
-                 bench_comparison_name(one->verdict), one->ratio, one->low, one->high,
-                 100 * one->threshold, one->adjusted);
-    fputs("    <testcase classname=\"", file);
-    bench_xml_text(file, one->samples->scene);
-    fprintf(file, "\" name=\"%s\" time=\"%.9f\">\n", bench_value_name(one->samples, one->value),
-            seconds);
-    fprintf(file, name ? "      <%s message=\"" : "      <system-out>", name);
-    bench_xml_text(file, line);
-    fputs(name ? "\"/>\n" : "</system-out>\n", file);
-    fputs("    </testcase>\n", file);
-}
-
-static void write_junit(FILE *file, const BenchRegression *found)
-{
-    int failures = 0, errors = 0, skipped = 0;
-    char line[512];
-    for (int i = 0; i < found->count; i++) {
-        const char *name = junit_element(found->list[i].verdict);
-        failures += name && name[0] == 'f';
-        errors += name && name[0] == 'e';
-        skipped += name && name[0] == 's';
-    }
-    bench_regression_summary(found, sizeof line, line);
-    fputs(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n  <testsuite name=\"shapebench "
-        "regress against ",
-        file);
-    bench_xml_text(file, found->baseline);
-    fprintf(file, "\" tests=\"%d\" failures=\"%d\" errors=\"%d\" skipped=\"%d\" time=\"%.3f\">\n",
-            found->count, failures, errors, skipped, found->seconds);
-    for (int i = 0; i < found->count; i++) write_case(file, &found->list[i]);
-    fputs("    <system-out>", file);
-    bench_xml_text(file, line);
-    for (int i = 0; i < found->remarks; i++) {
-        fputc('\n', file);
-        bench_xml_text(file, found->remark[i]);
-    }
-    fputs("</system-out>\n  </testsuite>\n</testsuites>\n", file);
-}
-
 void bench_regression_write(FILE *file, BenchRegressionFormat format, const BenchRegression *found)
 {
     switch (format) {
@@ -397,12 +315,6 @@ void bench_regression_write(FILE *file, BenchRegressionFormat format, const Benc
         break;
     case BENCH_REGRESSION_JSON:
         write_json(file, found);
-        break;
-    case BENCH_REGRESSION_JUNIT:
-        write_junit(file, found);
-        break;
-    case BENCH_REGRESSION_GBENCH:
-        write_gbench(file, found);
         break;
     }
 }

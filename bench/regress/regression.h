@@ -25,12 +25,10 @@ typedef struct {
 typedef enum {
     BENCH_REGRESSION_TEXT,
     BENCH_REGRESSION_MARKDOWN,
-    BENCH_REGRESSION_JSON,
-    BENCH_REGRESSION_JUNIT,
-    BENCH_REGRESSION_GBENCH
+    BENCH_REGRESSION_JSON
 } BenchRegressionFormat;
 
-/* "text", "markdown", "json", "junit", "gbench", NULL. */
+/* "text", "markdown", "json", NULL. */
 extern const char *const bench_regression_formats[];
 
 /* Adds a line for people; lines beyond the room are left out. */
@@ -46,12 +44,7 @@ void bench_regression_environment(BenchRegression *found);
  * "comparisons":
  *   [{"scene", "time", "verdict", "ratio", ..., "old": {"ms", "samples": [s], "outliers": [places],
  *   "cycles", ...}, "new"}], "remarks", "environments"}. What is not known is null. By cycles "ms"
- *   is null, and samples are cycles.
- * junit: a test case for each time; slower is a failure, INVALID an error, what has no verdict
- *   skipped.
- * gbench, of times alone: Google Benchmark's JSON, every process a repetition, "old/SCENE/TIME" and
- * "new/SCENE/TIME"; its compare.py takes it as `compare.py filters FILE old new`. cpu_time is the
- * wall time too. */
+ *   is null, and samples are cycles. */
 void bench_regression_write(FILE *file, BenchRegressionFormat format, const BenchRegression *found);
 
 /* The verdict on all in a line without an end. */

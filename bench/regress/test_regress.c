@@ -88,7 +88,6 @@ TEST(usage)
 {
     expect("shapebench regress", 2, "compare what?");
     expect("shapebench regress --baseline a --revision b", 2, "compare what?");
-    expect("shapebench regress --baseline a --by cycles --format gbench", 2, "has times alone");
     expect("shapebench regress --baseline a --by instructions", 2, "not one of time, cycles");
     expect("shapebench regress --baseline a --paper octree", 2, "--paper: a file has its own");
     expect("shapebench regress --baseline a --format pdf", 2, "'pdf' is not one of text, markdown");

@@ -66,56 +66,6 @@ TEST(bad_ranges_are_refused)
     }
 }
 
-static void set(const char *name, const char *value)
-{
-    if (value)
-        setenv(name, value, 1);
-    else
-        unsetenv(name);
-}
-
-TEST(shards_are_those_of_a_job_array)
-{
-    static const struct {
-        const char *id, *count, *least, *step;
-        int shard; /* 0: none, and the words */
-        const char *words;
-    } cases[] = {
-        {"1", "4", "1", NULL, 1, NULL},
-        {"9", "4", "0", "3", 4, NULL},
-        {"7", "3", "5", "1", 3, NULL},
-        {NULL, "4", "1", NULL, 0, "SLURM_ARRAY_TASK_ID is not set"},
-        {"1", NULL, "1", NULL, 0, "SLURM_ARRAY_TASK_COUNT is not set"},
-        {"0", "4", NULL, NULL, 1, NULL},
-        {"3", "4", NULL, NULL, 4, NULL},
-        {"4", "4", NULL, NULL, 0, "the first task's number in SLURM_ARRAY_TASK_MIN"},
-        {"1", "4", "", NULL, 0, "SLURM_ARRAY_TASK_MIN is ''"},
-        {"1", "0", "1", NULL, 0, "SLURM_ARRAY_TASK_COUNT is '0'"},
-        {"one", "4", "1", NULL, 0, "SLURM_ARRAY_TASK_ID is 'one'"},
-        {"", "4", "1", NULL, 0, "SLURM_ARRAY_TASK_ID is ''"},
-        {"-1", "4", "1", NULL, 0, "SLURM_ARRAY_TASK_ID is '-1'"},
-        {"2", "4", "0", "3", 0, "task 2 is none of 4 in even steps of 3 from 0 on"},
-        {"5", "4", "1", NULL, 0, "task 5 is none of 4"},
-        {"1", "4", "2", NULL, 0, "task 1 is none of 4"},
-        {"1", "99999999999999999999", "1", NULL, 0, "SLURM_ARRAY_TASK_COUNT is '99999"},
-        {"1", "20000", "1", NULL, 0, "at most 10000"},
-    };
-    int shard, shards;
-    SmError error;
-    for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
-        set("SLURM_ARRAY_TASK_ID", cases[c].id);
-        set("SLURM_ARRAY_TASK_COUNT", cases[c].count);
-        set("SLURM_ARRAY_TASK_MIN", cases[c].least);
-        set("SLURM_ARRAY_TASK_STEP", cases[c].step);
-        SmCode code = bench_shard_parse("auto", &shard, &shards, &error);
-        assert_int_equal(code, cases[c].shard ? SM_OK : SM_USAGE);
-        if (code && !strstr(error.text, cases[c].words)) fail_msg("%zu: %s", c, error.text);
-        if (code) continue;
-        assert_int_equal(shard, cases[c].shard);
-        assert_int_equal(shards, atoi(cases[c].count));
-    }
-}
-
 /* w 1 and 2, epsilon 0, 0.5 and 1. */
 static BenchPlan make_plan(const char *engines)
 {
@@ -271,28 +221,6 @@ TEST(a_sweep_comes_back)
     bench_campaign_free(&found);
     bench_campaign_free(&expected);
     unlink(path);
-}
-
-TEST(merging_adds_and_refuses)
-{
-    BenchCampaign all = make_sweep(1.5), same = make_sweep(1.5), twice = make_sweep(1.6),
-                  foreign = make_sweep(1.5), more = with_plan(all.plan);
-    BenchPoint point = make_measured(0, 3, 0, 9);
-    SmError error;
-    bench_campaign_add(&more, &point);
-    assert_int_equal(bench_campaign_merge(&all, &same, "same.h5", &error), SM_OK);
-    assert_int_equal(all.count, 3);
-    assert_int_equal(bench_campaign_merge(&all, &more, "more.h5", &error), SM_OK);
-    assert_int_equal(all.count, 4);
-    assert_int_equal(at(&all, 0)->index, 0);
-    assert_int_equal(bench_campaign_merge(&all, &twice, "twice.h5", &error), SM_INPUT);
-    assert_non_null(strstr(error.text, "twice.h5: its point 1 (octree with w 1, epsilon 0) was "
-                                       "measured twice"));
-    plan_of(&foreign)->scene_hash++;
-    assert_int_equal(bench_campaign_merge(&all, &foreign, "foreign.h5", &error), SM_INPUT);
-    assert_non_null(strstr(error.text, "foreign.h5 is of another sweep"));
-    BenchCampaign *each[] = {&all, &same, &twice, &foreign, &more};
-    for (int i = 0; i < 5; i++) bench_campaign_free(each[i]);
 }
 
 static SmCode load(const char *path, SmError *error)

@@ -1,4 +1,4 @@
-/* Sweeps as a user runs them: whole, interrupted, in shards, by mpirun; and mistakes. */
+/* Sweeps as a user runs them: whole, interrupted, by mpirun; and mistakes. */
 #define _GNU_SOURCE
 #include <signal.h>
 #include <unistd.h>
@@ -159,32 +159,6 @@ TEST(an_interrupted_sweep_goes_on)
     bench_campaign_free(&part);
 }
 
-TEST(shards_merge_to_the_whole)
-{
-    Result *result = malloc(sizeof *result);
-    runs(SMALL " --shard 1/2 -o one.h5");
-    runs(SMALL " --shard 2/2 -o two.h5");
-    run("merge first.h5 one.h5", result);
-    assert_int_equal(result->code, 0);
-    assert_string_equal(result->out, "first.h5: 2 of 3 points\n"
-                                     "missing: 1, the first octree with w 6, epsilon 0\n");
-    run("merge all.h5 one.h5 two.h5 one.h5", result);
-    assert_int_equal(result->code, 0);
-    assert_string_equal(result->out, "all.h5: 3 of 3 points\n");
-    equals_whole("all.h5");
-    run("merge first.h5 two.h5", result);
-    assert_int_equal(result->code, 4);
-    assert_non_null(strstr(result->err, "cannot write first.h5: it is there"));
-    run("merge twice.h5 one.h5 whole.h5", result);
-    assert_int_equal(result->code, 3);
-    assert_non_null(strstr(result->err, "was measured twice"));
-    run("merge none.h5 one.h5 noise.h5", result);
-    assert_int_equal(result->code, 3);
-    assert_non_null(strstr(result->err, "noise.h5: not an HDF5 file"));
-    assert_int_not_equal(access(path_in("twice.h5"), F_OK), 0);
-    free(result);
-}
-
 TEST(other_options_do_not_mix)
 {
     static const Mistake cases[] = {
@@ -215,8 +189,6 @@ TEST(mistakes_are_one_line)
         {"sweep --w 1:64 --engine octree --epsilon 0:1:0.005", 2, "12864 points"},
         {"sweep --engine brute", 2, "'brute' is not one of both, fastlsm, octree"},
         {"sweep --engine shell", 2, "fastlsm, octree: it has no w and epsilon; its Young's"},
-        {"sweep --shard 3/2", 2, "--shard: '3/2' is not I/N"},
-        {"sweep --shard 1", 2, "--shard: '1' is not I/N"},
         {"sweep --repeats 65", 2, "--repeats: '65'"},
         {"sweep --scene nothing", 2, "neither a built-in scene"},
         {"sweep --mesh nothing.obj", 3, "nothing.obj"},
@@ -226,9 +198,6 @@ TEST(mistakes_are_one_line)
         {"sweep whole.h5 --w 3", 2, "whole.h5 alone is shown as it is"},
         {"sweep whole.h5 -o x.h5", 2, "whole.h5 alone is shown as it is"},
         {SMALL " -o nowhere/x.h5", 4, "create the folder first"},
-        {"merge", 2, "give the file to write"},
-        {"merge a.h5", 2, "give the file to write"},
-        {"merge nowhere/a.h5 whole.h5", 4, "create the folder first"},
     };
     make_mistakes(cases, sizeof cases / sizeof cases[0]);
 }
