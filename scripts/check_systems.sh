@@ -119,7 +119,10 @@ table() {
     printf '\n'
 }
 
-if [ "${1-}" = --quick ]; then left_out='scripts/test( quick)?' && shift; fi
+if [ "${1-}" = --quick ]; then
+    left_out='scripts/test( quick)?' columns=(scripts/run view package wheel "stored files")
+    shift
+fi
 [[ ${1-} != -* ]] || { say "usage: scripts/check_systems.sh [--quick] [RELEASE...]" && exit 2; }
 [ $# -gt 0 ] || set -- bookworm trixie
 if [ "$(id -u)" -ne 0 ] || ! type debootstrap git unshare python3 >/dev/null; then

@@ -3,8 +3,8 @@
 
 usage: readme.py [WORD...]     only tables whose command has one of these words
 
-Leave the machine alone meanwhile, some five minutes; the table of scripts/check_systems.sh takes two hours more, as
-root. What is INVALID or BUSY is not taken: the table stays as it was.
+Leave the machine alone meanwhile, some five minutes; the table of scripts/check_systems.sh takes half an hour more,
+as root. What is INVALID or BUSY is not taken: the table stays as it was.
 Exit codes: 0 done; 1 a table stays; 2 usage."""
 import os
 import pathlib
