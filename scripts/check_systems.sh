@@ -19,7 +19,8 @@ sweep='scripts/run sweep --scene penguin --engine fastlsm --w 1:4 --frames 5 --b
 # and the mesh that README.md calls MESH.obj, into the first.
 # shellcheck disable=SC2317 # step() calls it
 make_root() {
-    debootstrap --variant=minbase "$1" "$2" "$mirror" && echo 127.0.0.1 localhost >"$2/etc/hosts" && cp -a -- "$2" "$2-package" &&
+    debootstrap --variant=minbase "$1" "$2" "$mirror" && echo 127.0.0.1 localhost >"$2/etc/hosts" &&
+        cp -a -- "$2" "$2-package" &&
         mkdir -p -- "$2-package/shapebench/build" && cp -a -- "$folder/clone" "$2/shapebench" &&
         PYTHONPATH=$2/shapebench/scripts python3 -Bc 'import small_inputs; print(small_inputs.BOX)' >"$2/shapebench/MESH.obj"
 }
@@ -88,7 +89,7 @@ make_wheel() {
 store() {
     line "$1" "stored files" "mkdir stored && scripts/run tables --scene penguin --repeats 201 -o stored/x.h5"
     line "$1" "stored files" "set -m; $sweep & until [ -e stored/sweep.h5 ] || ! kill -0 %1; do sleep 0.1; done
-        kill -INT %1; wait %1; [ \$? -eq 130 ]"
+        kill -TERM %1; wait %1; [ \$? -eq 143 ]" # not INT, which what runs in the background may ignore
     line "$1" "stored files" "$sweep --resume"
 }
 
