@@ -147,7 +147,7 @@ static Set set_of(const RefRegions *regions, long r)
 long ref_regions_unique(const RefRegions *regions)
 {
     Set *set = sm_alloc((size_t)regions->count, sizeof *set);
-#pragma omp parallel for schedule(dynamic, 64) num_threads(sm_team(0))
+#pragma omp parallel for schedule(dynamic, 64) num_threads(sm_team(0)) if (regions->walk)
     for (long r = 0; r < regions->count; r++) set[r] = set_of(regions, r);
     qsort(set, (size_t)regions->count, sizeof *set, compare_sets);
     long unique = regions->count > 0;
