@@ -88,7 +88,8 @@ extern const BenchTwin bench_lattice_twin, bench_octree_twin;
 double bench_twin_members(const BenchRunner *runner);
 
 /* Builds the reference's regions for a lattice engine, of whose links these pairs are parted
- * (parted.h), which it takes over: O(particles (2w+1)^3) time, and memory for up to REF_KEPT members. */
+ * (parted.h), which it takes over: O(particles (2w+1)^3) time, and memory for up to REF_KEPT
+ * members. */
 void bench_check_create(const BenchBody *body, int w, long parted, int (*pair)[2],
                         BenchCheck *check);
 
