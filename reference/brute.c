@@ -64,7 +64,7 @@ struct RefWalk {
 
 RefMembers ref_members(const RefRegions *regions, long r)
 {
-    if (regions->member)
+    if (!regions->walk)
         return (RefMembers){regions->member + regions->start[r],
                             regions->start[r + 1] - regions->start[r]};
     struct RefWalk *walk = regions->walk + omp_get_thread_num();
@@ -133,7 +133,7 @@ static int compare_sets(const void *a, const void *b)
 static Set set_of(const RefRegions *regions, long r)
 {
     RefMembers of = ref_members(regions, r);
-    Set set = {.size = of.count, .member = regions->member ? of.member : NULL};
+    Set set = {.size = of.count, .member = regions->walk ? NULL : of.member};
     for (long n = 0; n < of.count; n++)
         for (int i = 0; i < 2; i++) { /* the finaliser of MurmurHash3 */
             uint64_t h = (uint64_t)of.member[n] + (i ? 0x9e3779b97f4a7c15u : 1);

@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../fastlsm/operations.h"
 #include "../../lib/printable.h"
 #include "../../lib/system/team.h"
 #include "../../octree/engine.h"
@@ -17,7 +16,7 @@
 double bench_check_members(const BenchBody *body, int w)
 {
     double count = (double)body->voxels.particle_count, members = 1;
-    for (int d = 0; d < 3; d++) members *= lsm_window_places(w, body->voxels.size[d] + 1);
+    for (int d = 0; d < 3; d++) members *= fmin(2.0 * w + 1, body->voxels.size[d] + 1);
     return count * fmin(members, count);
 }
 

@@ -67,9 +67,9 @@ typedef struct {
     long parted_wrong;       /* links of a lattice that are broken but not cut, or the other way */
 } BenchDeviation;
 
-/* Members of all regions of this body, at most: particles times the mean part of a window that is
- * in its box. A check walks through them some ten times, at thirty nanoseconds each: beyond
- * BENCH_MOST_MEMBERS nothing is checked. */
+/* Members of all regions of this body, at most: a window's, cut to the body's box. A check walks
+ * through them some ten times, at thirty nanoseconds each: beyond BENCH_MOST_MEMBERS nothing is
+ * checked. */
 #define BENCH_MOST_MEMBERS 2e9
 double bench_check_members(const BenchBody *body, int w);
 

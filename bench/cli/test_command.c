@@ -189,7 +189,7 @@ TEST(mistakes_of_other_commands_are_too)
         {"scenes penguin --write-mesh /no/such/a.obj", 4, "/no/such/a.obj"},
         {"scenes penguin --write-mesh /dev/null", 4, "it is there and not a regular file"},
         {"scenes penguin --write-mesh /tmp", 4, "it is there and not a regular file"},
-        {"tables --scene wide.cfg", 3, "wide.cfg: regions with 2.08e+09 members take too long"},
+        {"tables --scene wide.cfg", 3, "wide.cfg: regions with 2.18e+09 members take too long"},
         {"tables --repeats 0", 2, "--repeats: '0'"},
         {"info shape:block --slice z=0.5 -o a.h5 --particles 9", 2, "without --format and --part"},
         {"tables --paper unknown", 2, "'unknown' is not one of fastlsm, octree, meshless"},

@@ -82,8 +82,7 @@ static SmCode check_members(const BenchRunner *runner, SmError *error)
     if (members <= BENCH_MOST_MEMBERS) return SM_OK;
     return sm_fail(error, SM_INPUT,
                    "%s: regions with %.3g members take too long to be checked by brute force (at "
-                   "most %g): take "
-                   "narrower ones",
+                   "most %g): take narrower ones",
                    runner->scene->file, members, BENCH_MOST_MEMBERS);
 }
 

@@ -6,7 +6,8 @@
 int openblas_get_num_threads(void) __attribute__((weak));
 void openblas_set_num_threads(int threads) __attribute__((weak));
 
-/* Returns how many it had, for ref_blas_again(): the caller's program may use it, too. */
+/* Returns how many it had, for ref_blas_again(): the caller's program may use it, too. The number
+ * is the process's: of two bodies that are solved at once one may run on more. */
 static inline int ref_blas_alone(void)
 {
     int threads = openblas_get_num_threads ? openblas_get_num_threads() : 1;
