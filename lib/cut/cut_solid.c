@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "../csr.h"
-#include "../mesh/edge.h"
+#include "../edge.h"
 #include "../system/hash.h"
 #include "../vector.h"
 

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../mesh/edge.h"
+#include "../edge.h"
 #include "../predicates.h"
 #include "../vector.h"
 #include "face_clip.h"

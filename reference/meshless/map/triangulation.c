@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../../lib/mesh/edge.h"
+#include "../../../lib/edge.h"
 
 void ref_triangulation_free(RefTriangulation *surface)
 {

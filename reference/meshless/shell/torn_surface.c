@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../../lib/mesh/edge.h"
+#include "../../../lib/edge.h"
 #include "../../../lib/pieces.h"
 #include "../../../lib/vector.h"
 
