@@ -39,7 +39,23 @@ int main(void) { return cmocka_run_group_tests((const struct CMUnitTest *)0, 0, 
   "No unit tests: no cmocka"
   INCLUDES ${CMOCKA_INCLUDE_DIRS} LIBRARIES ${CMOCKA_LINK_LIBRARIES})
 
-set(sources_of_files import|importer|mesh_files|mesh_text|polygon|recentre|reply|child)
+pkg_check_modules(JANSSON QUIET jansson)
+optional_library(jansson [[
+#include <jansson.h>
+int main(void) { return json_error_code(&(json_error_t){0}) + !json_null(); }]]
+  "No glTF: no jansson"
+  INCLUDES ${JANSSON_INCLUDE_DIRS} LIBRARIES ${JANSSON_LINK_LIBRARIES}
+  USED_BY lib/mesh/read_gltf.c SM_JANSSON)
+pkg_check_modules(ZLIB QUIET zlib)
+optional_library(zlib [[
+#include <zlib.h>
+int main(void) { return !zlibVersion(); }]]
+  "No compressed meshes (.gz): no zlib"
+  INCLUDES ${ZLIB_INCLUDE_DIRS} LIBRARIES ${ZLIB_LINK_LIBRARIES}
+  USED_BY lib/mesh/reader.c SM_ZLIB)
+set(pc_needs ${JANSSON_LDFLAGS} ${ZLIB_LDFLAGS})
+
+set(sources_of_files other|child)
 if(SHAPEBENCH_CORE)
   pkg_check_modules(GSL QUIET gsl)
   optional_library(gsl [[
@@ -56,7 +72,16 @@ int main(void) { return gsl_linalg_SV_decomp_jacobi((gsl_matrix *)0, 0, 0); }]]
   return()
 endif()
 # shapebench.pc.in. Not Requires: a program linked with the shared library needs none of their headers.
-set(pc_needs ${ASSIMP_LDFLAGS} ${GSL_LDFLAGS})
+list(APPEND pc_needs ${GSL_LDFLAGS})
+
+pkg_check_modules(ASSIMP QUIET assimp)
+optional_library(assimp [[
+#include <assimp/cimport.h>
+#include <assimp/scene.h>
+int main(void) { return !aiGetErrorString(); }]]
+  "No meshes but OBJ, PLY, STL, OFF and glTF: no Assimp"
+  INCLUDES ${ASSIMP_INCLUDE_DIRS} LIBRARIES ${ASSIMP_LINK_LIBRARIES}
+  USED_BY bench/system/machine.c SHAPEBENCH_ASSIMP)
 
 pkg_search_module(MPI QUIET mpi-c ompi-c mpich)
 optional_library(mpi [[
@@ -85,4 +110,10 @@ else()
   set(sources_left_out modes|node_order|solver|semidefinite)
 endif()
 
-string(APPEND sources_left_out |import_absent|references_absent|elastic_absent|dense_plain)
+string(APPEND sources_left_out |references_absent|elastic_absent|dense_plain)
+if(has_assimp)
+  string(APPEND sources_left_out |other_absent)
+  list(APPEND pc_needs ${ASSIMP_LDFLAGS})
+else()
+  string(APPEND sources_left_out |other|child)
+endif()

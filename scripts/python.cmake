@@ -8,12 +8,12 @@ install(FILES lib/public/shapebench.h DESTINATION ${python_module})
 install(CODE "file(RELATIVE_PATH library /${python_module} \"/${CMAKE_INSTALL_LIBDIR}/$<TARGET_SONAME_FILE_NAME:shapebench_shared>\")
 file(CREATE_LINK \"\${library}\" \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${python_module}/libshapebench.so\" SYMBOLIC)")
 
-# The wheel has the core alone, which needs nothing that is not in it; so no compiler and no packages.
+# The wheel has the core alone, and the libraries that it needs (scripts/wheel.py); so no compiler and no packages.
 if(NOT SHAPEBENCH_CORE)
-  set(absent lib/mesh/import_absent.c lib/public/references_absent.c)
+  set(absent lib/mesh/other_absent.c lib/public/references_absent.c)
 endif()
 add_library(shapebench_wheel_library SHARED ${core_objects} ${absent})
-target_link_libraries(shapebench_wheel_library PRIVATE shapebench_flags)
+target_link_libraries(shapebench_wheel_library PRIVATE shapebench_flags ${needed_by_core})
 set_target_properties(shapebench_wheel_library PROPERTIES OUTPUT_NAME shapebench LIBRARY_OUTPUT_DIRECTORY wheel
   BUILD_RPATH "$ORIGIN") # where the wheel has OpenMP's library
 show_header_alone(shapebench_wheel_library)

@@ -9,7 +9,7 @@ root=$(cd -- "$(dirname -- "$0")/.." && pwd)
 folder=$(mktemp -d)
 trap 'rm -rf -- "$folder"' EXIT
 mkdir "$folder/bin" "$folder/pc" "$folder/lib"
-for library in mpi cmocka arpack cholmod lapack; do : >"$folder/lib/lib$library.so"; done
+for library in mpi cmocka arpack assimp cholmod lapack; do : >"$folder/lib/lib$library.so"; done
 cat >"$folder/bin/mpicc" <<MPICC
 #!/bin/sh
 case \$* in
@@ -19,7 +19,7 @@ case \$* in
 esac
 MPICC
 chmod +x "$folder/bin/mpicc"
-for module in mpi-c cmocka arpack; do
+for module in mpi-c cmocka arpack assimp; do
     printf '%s\n' "Name: $module" "Description: broken" "Version: 1" "Cflags: -I$folder/absent" \
         "Libs: -L$folder/lib -l${module%-c}" >"$folder/pc/$module.pc"
 done
@@ -33,6 +33,6 @@ if ! PATH=$folder/bin:$PATH PKG_CONFIG_PATH=$folder/pc cmake -S "$root" -B "$fol
     cat "$folder/log"
     exit 1
 fi
-for line in "No MPI" "No unit tests" "No meshless bodies"; do
+for line in "No MPI" "No unit tests" "No meshless bodies" "No meshes but OBJ"; do
     grep -q -- "-- $line" "$folder/log" || { echo "no line '$line'"; cat "$folder/log"; exit 1; }
 done

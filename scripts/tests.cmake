@@ -103,7 +103,7 @@ function(add_fuzz_test source)
   file(STRINGS ${source} takes_files REGEX SHAPEBENCH_FUZZ_SUFFIX)
   set(formats "")
   if(takes_files)
-    set(formats _obj _off _ply _stl)
+    set(formats _off _ply _stl _gltf _glb _xyz _obj_gz) # and .obj
   endif()
   foreach(format IN ITEMS "" ${formats})
     set(name ${target}${format})

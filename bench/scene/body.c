@@ -13,13 +13,23 @@
 #include "../../lib/system/file.h"
 #include "../../lib/voxel/voxelise.h"
 #include "../../reference/meshless/surface/local_triangles.h"
+#include "../system/remark.h"
 #include "memory.h"
 #include "nearest.h"
+
+static SmCode import(const char *path, SmMesh *mesh, SmError *error)
+{
+    SmMeshLeftOut left_out;
+    char text[SM_LEFT_OUT_TEXT];
+    SmCode code = sm_import(path, NULL, mesh, &left_out, error);
+    if (!code && *sm_mesh_left_out(&left_out, text)) bench_remark("%s: left out: %s", path, text);
+    return code;
+}
 
 SmCode bench_mesh_load(const char *mesh, SmMesh *result, SmError *error)
 {
     if (!strncmp(mesh, "shape:", 6)) return sm_shape_mesh(mesh + 6, result, error);
-    return sm_import(mesh, NULL, result, error);
+    return import(mesh, result, error);
 }
 
 /* Whether the header of a PLY file says that it has faces. */
@@ -90,7 +100,7 @@ SmCode bench_mesh_of_scene(const BenchScene *scene, const char *substitute, SmMe
         *result = model;
         return code;
     }
-    code = sm_import(substitute, NULL, result, error);
+    code = import(substitute, result, error);
     if (!code) fit(result, &model);
     sm_mesh_free(&model);
     return code;

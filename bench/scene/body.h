@@ -22,7 +22,7 @@ typedef struct BenchBody {
     unsigned long long hash; /* FNV-1a of the mesh's coordinates and indices */
 } BenchBody;
 
-/* Reads a mesh: "shape:NAME" or a mesh file. */
+/* Reads a mesh: "shape:NAME" or a mesh file. A remark says what the file has that is left out. */
 SmCode bench_mesh_load(const char *mesh, SmMesh *result, SmError *error);
 
 /* Reads points from text (x y z nx ny nz) or a PLY file without faces, into `points`; from anything

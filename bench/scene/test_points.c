@@ -203,7 +203,7 @@ TEST(bad_clouds_are_one_clear_line)
                            "property list uchar int vertex_indices\nend_header\n"
                            "0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n");
     static const Mistake mistakes[] = {
-        {"run bare.xyz --engine meshless", 3, "bare.xyz: line 1 has three numbers"},
+        {"run bare.xyz --engine meshless", 3, "bare.xyz: the points have no normals"},
         {"run bare.ply --engine meshless", 3, "bare.ply: the points have no normals"},
         {"run few.xyz --engine meshless", 3, "few.xyz: "},
         {"run same.xyz --engine meshless", 3, "same.xyz: "},
@@ -212,8 +212,9 @@ TEST(bad_clouds_are_one_clear_line)
         {"run empty.xyz --engine meshless", 3, "empty.xyz: "},
         {"run absent.xyz --engine meshless", 3, "absent.xyz: "},
         {"run bare.xyz", 3, "bare.xyz"},
-        {"run torn.ply --engine meshless", 3, "torn.ply: the y of a vertex is not a finite number"},
-        {"run torn.ply --engine shell", 3, "torn.ply: the y of a vertex is not a finite number"},
+        {"run torn.ply --engine meshless", 3,
+         "torn.ply: line 12: the y of a vertex is not a finite"},
+        {"run torn.ply --engine shell", 3, "torn.ply: line 12: the y of a vertex is not a finite"},
     };
     make_mistakes(mistakes, sizeof mistakes / sizeof *mistakes);
 }

@@ -9,6 +9,7 @@
 #include "../../lib/printable.h"
 #include "../../lib/system/cores.h"
 #include "../../lib/system/team.h"
+#include "../system/remark.h"
 #include "../system/suggest.h"
 #include "provenance.h"
 
@@ -309,6 +310,7 @@ void bench_options_parse(const BenchCommandLine *line, int argc, char **argv, vo
         exit(SM_USAGE);
     }
     if (!common->isas.count) common->isas.name[common->isas.count++] = sm_isa_name(sm_isa());
+    if (common->quiet) bench_remarks_off();
     if (!common->threads) common->threads = sm_cores("");
     omp_set_num_threads(common->threads); /* lib/system/team.h */
 }

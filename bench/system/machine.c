@@ -1,6 +1,8 @@
 #include "machine.h"
 
+#ifdef SHAPEBENCH_ASSIMP
 #include <assimp/version.h>
+#endif
 #include <gsl/gsl_version.h>
 #include <jansson.h>
 #include <libconfig.h>
@@ -163,11 +165,15 @@ static void read_caches(BenchMachine *machine)
 static void read_libraries(size_t size, char *text)
 {
     unsigned major, minor, release;
+    char assimp[40] = "";
     H5get_libversion(&major, &minor, &release);
-    snprintf(text, size, "HDF5 %u.%u.%u, Assimp %u.%u.%u, GSL %s, libconfig %d.%d.%d, jansson %s",
-             major, minor, release, aiGetVersionMajor(), aiGetVersionMinor(), aiGetVersionPatch(),
-             gsl_version, LIBCONFIG_VER_MAJOR, LIBCONFIG_VER_MINOR, LIBCONFIG_VER_REVISION,
-             JANSSON_VERSION);
+#ifdef SHAPEBENCH_ASSIMP
+    snprintf(assimp, sizeof assimp, "Assimp %u.%u.%u, ", aiGetVersionMajor(), aiGetVersionMinor(),
+             aiGetVersionPatch());
+#endif
+    snprintf(text, size, "HDF5 %u.%u.%u, %sGSL %s, libconfig %d.%d.%d, jansson %s", major, minor,
+             release, assimp, gsl_version, LIBCONFIG_VER_MAJOR, LIBCONFIG_VER_MINOR,
+             LIBCONFIG_VER_REVISION, JANSSON_VERSION);
 }
 
 /* Joins the words; the first is the program and its command. What has no room becomes "...". */

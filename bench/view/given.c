@@ -4,9 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../lib/box.h"
 #include "../../lib/mesh/polygon.h"
-#include "../../lib/mesh/recentre.h"
 #include "../scene/body.h"
 
 static const double most_cut = 5e8; /* about three seconds of cutting polygons in a browser */
@@ -83,48 +81,33 @@ static SmCode count_triangles(long *triangles, SmError *error)
                    given.name);
 }
 
-/* Coordinates as the importer has them. */
-static void round_points(float (*rounded)[3])
-{
-    double middle[3] = {0};
-    SmBox box = sm_box_around(given.vertices, (const double(*)[3])given.point);
-    if (!sm_is_far(&box, middle)) middle[0] = middle[1] = middle[2] = 0;
-    for (long v = 0; v < given.vertices; v++)
-        for (int d = 0; d < 3; d++) {
-            rounded[v][d] = (float)(given.point[v][d] - middle[d]);
-            given.mesh.position[v][d] = (double)rounded[v][d] + middle[d];
-        }
-}
-
 /* Cuts a polygon; one with a corner that is not there into triangles without any, which are refused
- * later. False: no memory. */
-static bool cut(const float (*point)[3], const int *corner, int size, int (*triangle)[3])
+ * later. */
+static void cut(const int *corner, int size, int (*triangle)[3])
 {
     bool sound = true;
     for (int c = 0; c < size; c++) sound &= corner[c] >= 0 && corner[c] < given.vertices;
-    if (sound && size > 3) return sm_polygon_cut(point, (const unsigned *)corner, size, triangle);
+    if (sound && size > 3) {
+        sm_polygon_cut((const double(*)[3])given.point, corner, size, triangle);
+        return;
+    }
     for (int t = 0; t < size - 2; t++)
         for (int c = 0; c < 3; c++) triangle[t][c] = sound ? corner[c] : -1;
-    return true;
 }
 
-static SmCode make_triangles(void)
+static void make_triangles(void)
 {
-    float(*rounded)[3] = sm_alloc((size_t)given.vertices, sizeof *rounded);
     const int *corner = given.corner;
     int(*triangle)[3] = given.mesh.triangle;
-    bool room = true;
-    round_points(rounded);
-    for (long p = 0; p < given.polygons && room; p++) {
+    memcpy(given.mesh.position, given.point, (size_t)given.vertices * sizeof *given.point);
+    for (long p = 0; p < given.polygons; p++) {
         int size = given.size[p];
         if (size > 2) {
-            room = cut((const float(*)[3])rounded, corner, size, triangle);
+            cut(corner, size, triangle);
             triangle += size - 2;
         }
         corner += size;
     }
-    free(rounded);
-    return room ? SM_OK : sm_fail(&given.error, SM_MEMORY, "%s: no memory", given.name);
 }
 
 const char *view_given_take(const char *name)
@@ -135,7 +118,7 @@ const char *view_given_take(const char *name)
     SmCode code = count_triangles(&triangles, &given.error);
     if (!code) {
         given.mesh = sm_mesh_new(given.vertices, triangles);
-        code = make_triangles();
+        make_triangles();
     }
     if (!code) code = sm_mesh_prepare(&given.mesh, given.name, &given.error);
     if (code) sm_mesh_free(&given.mesh);

@@ -1,11 +1,7 @@
 /* given.h - a mesh that the page has read from a file, for the scene that it opens next.
  *
  * Assimp is not in WebAssembly: the page reads files itself (scripts/view/mesh_files.js) and hands
- * over plain polygons. Of them becomes what sm_import() would make: coordinates of single
- * precision, far from the origin about the mesh's middle (lib/mesh/recentre.h), polygons cut, equal
- * positions merged, all checked. So a body has as many particles here as in the program; decimals,
- * which Assimp rounds to one digit of single precision up or down, are rounded to the nearest here.
- */
+ * over plain polygons. Of them becomes what sm_import() would make. */
 #ifndef BENCH_GIVEN_H
 #define BENCH_GIVEN_H
 

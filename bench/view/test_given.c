@@ -74,7 +74,7 @@ TEST(a_mesh_is_the_one_that_is_imported)
     for (int i = 0; i < 3; i++) {
         SmMesh imported, given;
         SmError error;
-        if (sm_import(write_obj(&prism, places[i], 0.7), NULL, &imported, &error))
+        if (sm_import(write_obj(&prism, places[i], 0.7), NULL, &imported, NULL, &error))
             fail_msg("%s", error.text);
         assert_string_equal(give(&prism, places[i], 0.7), "");
         if (view_given_load("folder/prism.obj", &given, &error)) fail_msg("%s", error.text);

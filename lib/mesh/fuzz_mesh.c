@@ -1,135 +1,151 @@
-/* The mesh path around the importer: text moved to the origin, polygons cut, a child's reply of any
- * bytes read, then merge, check and counts.
- * With SHAPEBENCH_FUZZ_SUFFIX set (say ".obj") the bytes are a mesh file instead and go through the
- * importer's process too. */
-#include "import.h"
-#include "mesh_text.h"
-#include "polygon.h"
-#include "recentre.h"
-#include "reply.h"
-
-#include <math.h>
+/* Readers of meshes: bytes as a file of the format that SHAPEBENCH_FUZZ_SUFFIX names (".obj", the
+ * default), or as changes to a sound file of it; and polygons. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
+
+#include "polygon.h"
+#include "reader.h"
 
 int LLVMFuzzerTestOneInput(const unsigned char *data, size_t size);
 
-static void expect(bool condition, const char *what)
+#define CORNERS "0 0 0\n1 0 0\n0 1 0\n0 0 1\n"
+#define FACES   "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n"
+#define GLTF                                                                                       \
+    "{\"asset\":{\"version\":\"2.0\"},\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,"        \
+    "\"scale\":[1,2,-3],"                                                                          \
+    "\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{\"TRANSLATION\":0}}}}],"         \
+    "\"meshes\":[{"                                                                                \
+    "\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1,\"mode\":4}]}],\"accessors\":" \
+    "[{"                                                                                           \
+    "\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\",\"sparse\":{\"count\":" \
+    "1,"                                                                                           \
+    "\"indices\":{\"bufferView\":1,\"componentType\":5123},\"values\":{\"bufferView\":0}}},{"      \
+    "\"bufferView\":1,"                                                                            \
+    "\"componentType\":5123,\"count\":12,\"type\":\"SCALAR\"}],\"bufferViews\":[{\"buffer\":0,"    \
+    "\"byteLength\":48},{\"buffer\":0,\"byteOffset\":48,\"byteLength\":24}],\"buffers\":[{"        \
+    "\"byteLength\":72,"                                                                           \
+    "\"uri\":\"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/"      \
+    "AAACAAEAAAABAAMAAQACAAMAAAADAAIA\"}]}"
+
+#define SOUND(suffix, text)                                                                        \
+    {                                                                                              \
+        suffix, text, sizeof(text) - 1                                                             \
+    }
+static const char stl[134] = {[80] = 1, [98] = 64, [112] = 64, [126] = 64};
+
+static const struct {
+    const char *suffix, *text;
+    size_t size;
+} sound[] = {
+    SOUND(".obj", "v 0 0 0 1 1 1\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1/1 3//1 2\nf -4 -3 -1\nf 2 3 "
+                  "4\\\n1\nl 1 2\n"),
+    SOUND(".off", "STCNOFF\n4 4 0\n" CORNERS "# c\n" FACES),
+    SOUND(".off",
+          "OFF BINARY\n\0\0\0\3\0\0\0\1\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\1\0\0\0\0\0\0\0\0\0\0\0"
+          "\0\0\0\0\1\0\0\0\0\0\0\0\0\0\0\3\0\0\0\0\0\0\0\1\0\0\0\2\0\0\0\0"),
+    SOUND(".ply",
+          "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty char x\nproperty list "
+          "uchar ushort l\nproperty char y\nproperty char z\nelement face 1\nproperty list uchar "
+          "uchar vertex_index\nelement tristrips 1\nproperty list char char vertex_indices\n"
+          "end_header\n\0\0\0\0\1\1\0\0\0\0\0\0\1\0\3\0\1\2\4\0\1\2\0"),
+    SOUND(".ply",
+          "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty "
+          "float z\nproperty float nx\nelement face 4\nproperty list uchar int vertex_index\n"
+          "end_header\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n" FACES),
+    SOUND(".stl",
+          "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+          "endloop\nendfacet\nendsolid\n"),
+    {".stl", stl, sizeof stl},
+    SOUND(".gltf", GLTF),
+    SOUND(".glb", "glTF\2\0\0\0----####JSON" GLTF),
+    SOUND(".xyz", "2\n0 0 0 0 0 1\n1 1 1 0 0 -1 7\n"),
+};
+
+static void require(bool condition, const char *what)
 {
     if (condition) return;
     fprintf(stderr, "fuzz_mesh: %s\n", what);
     abort();
 }
 
-/* What holds for every mesh that the reader lets through. */
+/* What holds for every mesh that a reader lets through. */
 static void inspect(SmMesh *mesh)
 {
-    expect(sm_mesh_check(mesh, "merged", NULL) == SM_OK, "a merged mesh fails its check");
+    require(sm_mesh_check(mesh, "merged", NULL) == SM_OK, "a merged mesh fails its check");
     SmMeshInfo info = sm_mesh_info(mesh);
-    expect(info.components >= 1 && info.components <= info.triangles, "components");
+    require(info.components >= 1 && info.components <= info.triangles, "components");
     bool closed = !info.open_edges && !info.flipped_edges && !info.nonmanifold_edges;
-    expect(isfinite(info.volume) || !closed, "a closed mesh has no volume");
-    expect(isnan(info.volume) || !(info.open_edges + info.flipped_edges), "volume of an open mesh");
-    expect(info.duplicates < info.triangles, "duplicates");
+    require(isfinite(info.volume) || !closed, "a closed mesh has no volume");
+    require(isnan(info.volume) || !(info.open_edges + info.flipped_edges), "an open mesh has one");
+    require(info.duplicates < info.triangles, "duplicates");
     sm_mesh_merge(mesh);
-    expect(mesh->vertex_count == info.vertices && mesh->triangle_count == info.triangles,
-           "merging twice is not merging once");
-}
-
-/* Random bytes seldom are a header, so it is made to fit them: the first two bytes say how many of
- * the rest are positions; small numbers make vertices coincide. */
-static SmCode read_shaped(const unsigned char *data, size_t size, SmMesh *mesh)
-{
-    if (size < 2) return SM_INPUT;
-    size_t vertices = 1 + data[0] % 64, triangles = (size - 2) / 3;
-    size_t bytes = sizeof(SmReplyHeader) + vertices * sizeof *mesh->position +
-                   triangles * sizeof *mesh->triangle;
-    unsigned char *reply = sm_alloc(bytes, 1);
-    SmReplyHeader header = {.magic = SM_REPLY_MAGIC};
-    header.vertex_count = (int64_t)vertices;
-    header.triangle_count = (int64_t)triangles;
-    memcpy(reply, &header, sizeof header);
-    double *position = (double *)(reply + sizeof header);
-    for (size_t i = 0; i < 3 * vertices; i++) position[i] = data[(i * 7 + 1) % size] / 8 * 1e-8;
-    int *corner = (int *)(position + 3 * vertices);
-    for (size_t i = 0; i < 3 * triangles; i++)
-        corner[i] = data[2 + i] % (int)(vertices + data[1] / 255);
-    position[0] += 1;
-    SmCode code = sm_reply_read(reply, bytes, "fuzz", mesh, NULL);
-    free(reply);
-    return code;
-}
-
-/* Any text in any of the formats; the copies must still be texts of about that length. */
-static void rewrite(const unsigned char *data, size_t size)
-{
-    static const char *const suffix[] = {"obj", "stl", "PLY", "off"};
-    char *text = sm_alloc(size + 1, 1);
-    memcpy(text, data, size);
-    for (int f = 0; f < 4; f++) {
-        double offset[3];
-        size_t new_size = 0;
-        char *copy = sm_recentre(text, size, suffix[f], &new_size, offset);
-        expect(!copy || strlen(copy) == new_size, "the moved text has another length");
-        free(copy);
-    }
-    size_t new_size = 0;
-    char *copy = sm_ply_ordered(text, size, &new_size);
-    expect(!copy || new_size <= size + 1, "reordering adds more than the last newline");
-    free(copy);
-    free(text);
+    require(mesh->vertex_count == info.vertices && mesh->triangle_count == info.triangles,
+            "merging twice is not merging once");
 }
 
 /* A polygon with a corner per three bytes: every corner must be in some triangle. */
 static void cut(const unsigned char *data, size_t size)
 {
     enum { MOST = 100 };
-    float position[MOST][3];
-    unsigned corner[MOST];
-    int triangle[MOST][3], count = (int)(size / 3 < MOST ? size / 3 : MOST);
+    double position[MOST][3];
+    int corner[MOST], triangle[MOST][3], count = (int)(size / 3 < MOST ? size / 3 : MOST);
     bool used[MOST] = {false};
     if (count < 3) return;
     for (int i = 0; i < count; i++) {
-        corner[i] = (unsigned)i;
-        for (int a = 0; a < 3; a++) position[i][a] = (float)(data[3 * i + a] % 16);
+        corner[i] = i;
+        for (int a = 0; a < 3; a++) position[i][a] = data[3 * i + a] % 16;
     }
-    expect(sm_polygon_cut((const float(*)[3])position, corner, count, triangle), "no memory");
+    sm_polygon_cut((const double(*)[3])position, corner, count, triangle);
     for (int t = 0; t < count - 2; t++)
         for (int c = 0; c < 3; c++) used[triangle[t][c]] = true;
-    for (int i = 0; i < count; i++) expect(used[i], "a corner is lost");
+    for (int i = 0; i < count; i++) require(used[i], "a corner is lost");
 }
 
-static SmCode import_bytes(const unsigned char *data, size_t size, const char *suffix, SmMesh *mesh)
+static void read_both(const char *suffix, const unsigned char *bytes, size_t size)
 {
-    char path[64];
-    snprintf(path, sizeof path, "/tmp/fuzz_mesh_XXXXXX%s", suffix);
-    int descriptor = mkstemps(path, (int)strlen(suffix));
-    FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "wb");
-    expect(file && fwrite(data, 1, size, file) == size && fclose(file) == 0, "cannot write /tmp");
-    SmCode code = sm_import(path, &(SmImportLimits){.seconds = 0.5, .megabytes = 1024}, mesh, NULL);
-    unlink(path);
-    return code;
+    SmMeshFile file = {.name = suffix, .bytes = bytes, .size = size};
+    SmMesh mesh;
+    SmError error = {0};
+    long count;
+    double(*position)[3], (*normal)[3];
+    if (sm_mesh_read(&file, &mesh, NULL, &error) == SM_OK)
+        inspect(&mesh);
+    else
+        require(!strncmp(error.text, suffix, strlen(suffix)) && !mesh.position, "an error's line");
+    sm_mesh_free(&mesh);
+    if (sm_mesh_read_points(&file, &count, &position, &normal, &error)) return;
+    require(count > 0 && isfinite(position[count - 1][2]), "points");
+    sm_free_all(position, normal);
+}
+
+/* Changes a sound file: the first byte says which, pairs of bytes then how far on and to what. */
+static void read_changed(const char *suffix, const unsigned char *data, size_t size)
+{
+    size_t files = sizeof sound / sizeof *sound, which = size ? data[0] % files : 0;
+    for (size_t i = 0; i < files && strcmp(sound[which].suffix, suffix); i++)
+        which = (which + 1) % files;
+    if (strcmp(sound[which].suffix, suffix) != 0) return;
+    size_t length = sound[which].size, at = 0;
+    unsigned char *bytes = malloc(length); /* the sanitizer sees its end */
+    memcpy(bytes, sound[which].text, length);
+    for (int b = 0; b < 4 && sound[which].text[0] == 'g'; b++)
+        bytes[12 + b] = (unsigned char)((length - 20) >> 8 * b);
+    for (size_t i = 1; i + 1 < size; i += 2) {
+        at = (at + data[i]) % length;
+        bytes[at] = data[i + 1];
+    }
+    read_both(suffix, bytes, length);
+    read_both(suffix, bytes, size ? length - size % length : length);
+    free(bytes);
 }
 
 int LLVMFuzzerTestOneInput(const unsigned char *data, size_t size)
 {
-    SmMesh mesh;
     const char *suffix = getenv("SHAPEBENCH_FUZZ_SUFFIX");
-    if (suffix) {
-        if (import_bytes(data, size, suffix, &mesh) == SM_OK) inspect(&mesh);
-        sm_mesh_free(&mesh);
-        return 0;
-    }
-    rewrite(data, size);
+    if (!suffix) suffix = ".obj";
     cut(data, size);
-    SmError error;
-    if (sm_reply_read(data, size, "fuzz", &mesh, &error) == SM_OK) inspect(&mesh);
-    sm_mesh_free(&mesh);
-    if (read_shaped(data, size, &mesh) == SM_OK) {
-        inspect(&mesh);
-        sm_mesh_free(&mesh);
-    }
+    read_both(suffix, data, size);
+    read_changed(suffix, data, size);
     return 0;
 }

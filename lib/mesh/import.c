@@ -1,102 +1,93 @@
 #include "import.h"
-#include "../system/child.h"
-#include "../system/file.h"
-#include "importer.h"
-#include "reply.h"
 
-#include <math.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
-static const double default_seconds = 20, default_seconds_per_megabyte = 1;
-static const double default_megabytes = 4096;
+#include "../system/file.h"
 
-/* Suffixes of common point files, which Assimp does not know. */
-static bool is_point_format(const char *path)
+/* Reads all of a file. False: `error`, if not NULL, says why. The caller frees. */
+static bool read_file(const char *path, unsigned char **bytes, size_t *size, SmError *error)
 {
-    static const char *const suffix[] = {".xyz", ".pts", ".txt", ".pcd", ".las", ".laz"};
-    const char *dot = strrchr(path, '.');
-    for (size_t i = 0; dot && i < sizeof suffix / sizeof *suffix; i++)
-        if (strcasecmp(dot, suffix[i]) == 0) return true;
+    double length = 0;
+    FILE *file = sm_file_open(path, &length, error);
+    if (!file) return false;
+    *size = (size_t)length;
+    *bytes = malloc(*size + 1);
+    bool good = *bytes && fread(*bytes, 1, *size, file) == *size;
+    fclose(file);
+    if (good) return true;
+    sm_fail(error, *bytes ? SM_INPUT : SM_MEMORY, "%s: %s", path,
+            *bytes ? "cannot be read to its end" : "there is no memory for it");
+    free(*bytes);
+    *bytes = NULL;
     return false;
 }
 
-/* Says also how many bytes the file has. */
-static SmCode check_file(const char *path, double *bytes, SmError *error)
+/* An SmMeshBeside of the mesh's path. Links are followed before the folder is compared. WebAssembly
+ * has no files. */
+static bool read_beside(void *of, const char *name, unsigned char **bytes, size_t *size)
 {
-    FILE *file = sm_file_open(path, bytes, error);
-    if (!file) return SM_INPUT;
-    fclose(file);
-    if (*bytes == 0) return sm_fail(error, SM_INPUT, "%s: the file is empty", path);
-    if (is_point_format(path))
-        return sm_fail(error, SM_INPUT,
-                       "%s: a point format holds only points, no triangles; " SM_REPLY_POINTS,
-                       path);
-    return SM_OK;
+    const char *path = of, *slash = strrchr(path, '/');
+    size_t length = slash ? (size_t)(slash - path) + 1 : 0;
+    char *joined = sm_alloc(length + strlen(name) + 3, 1);
+    memcpy(joined, length ? path : "./", length ? length : 2);
+    char *folder = realpath(joined, NULL), *resolved = NULL;
+    strcat(joined, name);
+    if (folder && *name != '/') resolved = realpath(joined, NULL);
+    size_t depth = folder ? strlen(folder) : 0;
+    bool beneath =
+        resolved && !strncmp(resolved, folder, depth) && (resolved[depth] == '/' || depth == 1);
+    bool good = beneath && read_file(resolved, bytes, size, NULL);
+    sm_free_all(joined, folder, resolved);
+    return good;
 }
 
-static SmCode fail_child(const SmChildResult *result, const SmChildLimits *limits, const char *path,
-                         SmError *error)
+static bool open_mesh(const char *path, SmMeshFile *file, unsigned char **bytes, SmError *error)
 {
-    switch (result->end) {
-    case SM_CHILD_TOO_LONG:
-        return sm_fail(error, SM_INPUT,
-                       "%s: reading it took longer than %g s: it may be "
-                       "damaged; save it anew as OBJ, PLY or STL",
-                       path, limits->seconds);
-    case SM_CHILD_TOO_LARGE:
-        return sm_fail(error, SM_INPUT, "%s: reading it took more than %g MB", path,
-                       limits->megabytes);
-    case SM_CHILD_FAILED:
-        return sm_fail(error, SM_INPUT, "%s: the importer could not be started: %s", path,
-                       strerror(result->status));
-    default:
-        break;
-    }
-    if (result->signal)
-        return sm_fail(error, SM_INPUT, "%s: the importer crashed on it (%s)", path,
-                       strsignal(result->signal));
-    return sm_fail(error, SM_INPUT, "%s: the importer gave up on it (status %d)", path,
-                   result->status);
+    *file = (SmMeshFile){.name = path, .beside = read_beside, .of = (void *)path};
+    bool good = read_file(path, bytes, &file->size, error);
+    file->bytes = *bytes;
+    return good;
 }
 
-/* Runs the importer on the file; on SM_OK the caller frees result->reply. */
-static SmCode run(SmChildBody body, const char *path, const SmImportLimits *limits,
-                  SmChildResult *result, SmError *error)
+/* Point formats that are not read. */
+static bool is_point_format(const char *path)
 {
-    double bytes = 0;
-    SmCode code = check_file(path, &bytes, error);
-    if (code != SM_OK) return code;
-    SmChildLimits child = {rint(default_seconds + default_seconds_per_megabyte * bytes / 1e6),
-                           default_megabytes};
-    if (limits && limits->seconds > 0) child.seconds = limits->seconds;
-    if (limits && limits->megabytes > 0) child.megabytes = limits->megabytes;
-    *result = sm_child_run(body, (void *)path, &child);
-    if (result->end == SM_CHILD_REPLIED) return SM_OK;
-    fail_child(result, &child, path, error);
-    free(result->reply);
-    return SM_INPUT;
+    static const char *const suffix[] = {".pcd", ".las", ".laz"};
+    const char *dot = strrchr(path, '.');
+    for (int i = 0; dot && i < 3; i++)
+        if (!strcasecmp(dot, suffix[i])) return true;
+    return false;
 }
 
-SmCode sm_import(const char *path, const SmImportLimits *limits, SmMesh *mesh, SmError *error)
+SmCode sm_import(const char *path, const SmImportLimits *limits, SmMesh *mesh,
+                 SmMeshLeftOut *left_out, SmError *error)
 {
-    SmChildResult result;
+    SmMeshFile file;
+    unsigned char *bytes = NULL;
     *mesh = (SmMesh){0};
-    SmCode code = run(sm_importer, path, limits, &result, error);
-    if (code != SM_OK) return code;
-    code = sm_reply_read(result.reply, result.size, path, mesh, error);
-    free(result.reply);
+    if (!open_mesh(path, &file, &bytes, error)) return SM_INPUT;
+    SmCode code;
+    if (is_point_format(path))
+        code = sm_fail(error, SM_INPUT,
+                       "%s: a point format that is not read; save it as PLY or XYZ", path);
+    else if (sm_mesh_readable(path))
+        code = sm_mesh_read(&file, mesh, left_out, error);
+    else
+        code = sm_import_other(&file, limits, mesh, left_out, error);
+    free(bytes);
     return code;
 }
 
-SmCode sm_import_points(const char *path, const SmImportLimits *limits, long *count,
-                        double (**position)[3], double (**normal)[3], SmError *error)
+SmCode sm_import_points(const char *path, long *count, double (**position)[3], double (**normal)[3],
+                        SmError *error)
 {
-    SmChildResult result;
-    SmCode code = run(sm_importer_points, path, limits, &result, error);
-    if (code != SM_OK) return code;
-    code = sm_reply_points(result.reply, result.size, path, count, position, normal, error);
-    free(result.reply);
+    SmMeshFile file;
+    unsigned char *bytes = NULL;
+    if (!open_mesh(path, &file, &bytes, error)) return SM_INPUT;
+    SmCode code = sm_mesh_read_points(&file, count, position, normal, error);
+    free(bytes);
     return code;
 }

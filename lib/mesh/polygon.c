@@ -1,7 +1,10 @@
 #include "polygon.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
+
+#include "../error.h"
 
 /* Ear clipping on a ring of corners in the plane that fits the polygon best. */
 typedef struct {
@@ -42,29 +45,29 @@ static double ear_quality(const Ring *ring, int i)
 }
 
 /* Newell's normal: its largest part says which axis to drop. */
-static void project(const float (*position)[3], const unsigned *corner, int count, Ring *ring)
+static void project(const double (*position)[3], const int *corner, int count, Ring *ring)
 {
     double normal[3] = {0};
     for (int i = 0; i < count; i++) {
-        const float *p = position[corner[i]], *q = position[corner[(i + 1) % count]];
-        const float *o = position[corner[0]];
+        const double *p = position[corner[i]], *q = position[corner[(i + 1) % count]];
+        const double *o = position[corner[0]];
         for (int a = 0; a < 3; a++) {
             int b = (a + 1) % 3, c = (a + 2) % 3;
-            normal[a] += ((double)p[b] - (double)o[b]) * ((double)q[c] - (double)o[c]) -
-                         ((double)p[c] - (double)o[c]) * ((double)q[b] - (double)o[b]);
+            normal[a] += (p[b] - o[b]) * (q[c] - o[c]) - (p[c] - o[c]) * (q[b] - o[b]);
         }
     }
     int drop = fabs(normal[0]) > fabs(normal[1]) ? 0 : 1;
     if (fabs(normal[2]) >= fabs(normal[drop])) drop = 2;
     int u = (drop + 1) % 3, v = (drop + 2) % 3;
     for (int i = 0; i < count; i++) {
-        const float *p = position[corner[i]];
-        ring->point[i][0] = (double)p[normal[drop] < 0 ? v : u];
-        ring->point[i][1] = (double)p[normal[drop] < 0 ? u : v];
+        const double *p = position[corner[i]], *o = position[corner[0]];
+        double right = p[u] - o[u], up = p[v] - o[v];
+        ring->point[i][0] = normal[drop] < 0 ? up : right;
+        ring->point[i][1] = normal[drop] < 0 ? right : up;
     }
 }
 
-static void clip_ears(Ring *ring, const unsigned *corner, int count, int (*triangle)[3])
+static void clip_ears(Ring *ring, const int *corner, int count, int (*triangle)[3])
 {
     for (int i = 0; i < count; i++) {
         ring->before[i] = (i + count - 1) % count;
@@ -77,9 +80,9 @@ static void clip_ears(Ring *ring, const unsigned *corner, int count, int (*trian
         for (int i = ring->after[start]; i != start; i = ring->after[i])
             if (ring->quality[i] > ring->quality[best]) best = i;
         int left = ring->before[best], right = ring->after[best];
-        triangle[t][0] = (int)corner[left];
-        triangle[t][1] = (int)corner[best];
-        triangle[t][2] = (int)corner[right];
+        triangle[t][0] = corner[left];
+        triangle[t][1] = corner[best];
+        triangle[t][2] = corner[right];
         ring->after[left] = right;
         ring->before[right] = left;
         ring->quality[left] = ear_quality(ring, left);
@@ -88,20 +91,14 @@ static void clip_ears(Ring *ring, const unsigned *corner, int count, int (*trian
     }
 }
 
-bool sm_polygon_cut(const float (*position)[3], const unsigned *corner, int count,
-                    int (*triangle)[3])
+void sm_polygon_cut(const double (*position)[3], const int *corner, int count, int (*triangle)[3])
 {
     size_t n = (size_t)count;
-    Ring ring = {malloc(n * sizeof *ring.point), malloc(n * sizeof(int)), malloc(n * sizeof(int)),
-                 malloc(n * sizeof(double))};
-    bool room = ring.point && ring.before && ring.after && ring.quality;
-    if (room) {
-        project(position, corner, count, &ring);
-        clip_ears(&ring, corner, count, triangle);
-    }
+    Ring ring = {.point = sm_alloc(n, sizeof *ring.point + sizeof(double) + 2 * sizeof(int))};
+    ring.quality = (double *)(ring.point + n);
+    ring.before = (int *)(ring.quality + n);
+    ring.after = ring.before + n;
+    project(position, corner, count, &ring);
+    clip_ears(&ring, corner, count, triangle);
     free(ring.point);
-    free(ring.before);
-    free(ring.after);
-    free(ring.quality);
-    return room;
 }

@@ -16,7 +16,8 @@
 typedef bool (*SmMeshBeside)(void *of, const char *name, unsigned char **bytes, size_t *size);
 
 typedef struct {
-    const char *name; /* for its suffix and for messages */
+    const char *name;   /* for its suffix and for messages */
+    const char *suffix; /* of its format; NULL: the name's */
     const unsigned char *bytes;
     size_t size;
     SmMeshBeside beside; /* NULL: there are no other files */

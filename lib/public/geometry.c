@@ -52,7 +52,7 @@ int sb_mesh_load(const char *path, const sb_load_params *params, sb_mesh **mesh,
     if (!code) code = sm_check_range(p.megabytes, 0, 1e6, "megabytes", error);
     if (code) return code;
     SmImportLimits limits = {p.seconds, p.megabytes};
-    SmCode inner = sm_import(path, &limits, &made, &why);
+    SmCode inner = sm_import(path, &limits, &made, NULL, &why);
     return finish_mesh(inner, &why, &made, mesh, error);
 }
 

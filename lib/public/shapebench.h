@@ -100,8 +100,8 @@ int sb_engine_available(int engine);
 
 typedef struct {
     size_t size;
-    double seconds;   /* limit of time; 0: 20 s, and one more for each MB of the file */
-    double megabytes; /* limit of memory; 0: 4096 */
+    double seconds;   /* Assimp's limit of time; 0: 20 s, and one more for each MB of the file */
+    double megabytes; /* Assimp's limit of memory; 0: 4096 */
 } sb_load_params;
 
 typedef struct {
@@ -119,9 +119,10 @@ typedef struct {
 
 void sb_load_params_init(sb_load_params *params, size_t size);
 
-/* Reads a mesh file of any format that Assimp reads (OBJ, PLY, STL, OFF, glTF, ...): polygons are
- * triangulated, equal positions merged. The importer runs in a child process within the limits
- * (`params` may be NULL: the defaults), so a damaged file is an error (SB_INPUT) and no more. */
+/* Reads a mesh file: OBJ, PLY, STL, OFF, glTF or GLB, also compressed (.gz), in double precision;
+ * and, where the library has Assimp, its formats, in a child process within the limits (`params`
+ * may be NULL: the defaults). Polygons are triangulated, equal positions merged; points and lines
+ * are left out. A damaged file is an error (SB_INPUT). */
 int sb_mesh_load(const char *path, const sb_load_params *params, sb_mesh **mesh, sb_error *error);
 
 /* A mesh of the caller's `vertices` points and of triangles that name three of them each,

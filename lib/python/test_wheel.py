@@ -70,15 +70,19 @@ class Wheel(unittest.TestCase):
         said = self.python("-c", """if True:
             import shapebench as sb
             print(sb.engines())
-            for refused in (lambda: sb.Mesh.load("my.obj"),
+            open("my.obj", "w").write("v 0 0 0\\nv 1 0 0\\nv 0 1 0\\nv 0 0 1\\nf 1 3 2\\nf 1 2 4\\nf 2 3 4\\nf 1 4 3\\n")
+            open("my.dae", "w").write("<COLLADA/>")
+            print(sb.Mesh.load("my.obj").facts().triangles)
+            for refused in (lambda: sb.Mesh.load("my.dae"),
                             lambda: sb.Body(sb.Voxels.from_cells([[[1]]], 1), engine="brute", precision="double")):
                 try:
                     refused()
                 except sb.InputError as error:
                     print(error)""").splitlines()
         self.assertEqual(said[0], "['fastlsm', 'octree']")
-        self.assertIn("my.obj: this library was built without Assimp", said[1])
-        self.assertIn("the engine brute is not in this library", said[2])
+        self.assertEqual(said[1], "4")
+        self.assertIn("my.dae: formats other than OBJ, PLY, STL, OFF and glTF are read with Assimp", said[2])
+        self.assertIn("the engine brute is not in this library", said[3])
 
     def test_the_same_files_make_the_same_wheel(self):
         before = self.wheel.read_bytes()

@@ -416,7 +416,7 @@ static bool check_file(const char *path, const char *name)
 {
     SmMesh m;
     SmError error = {0};
-    if (sm_import(path, NULL, &m, &error)) return false;
+    if (sm_import(path, NULL, &m, NULL, &error)) return false;
     SmVoxelParams params = {.fill = SM_SOLID, .particles = 5000};
     SmVoxels v;
     SmVoxelReport report;

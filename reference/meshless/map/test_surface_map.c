@@ -558,7 +558,7 @@ TEST(real_meshes_have_maps)
         SmMesh mesh;
         SmError error = {0};
         snprintf(path, sizeof path, "%s/%s", folder, wanted[n].file);
-        if (sm_import(path, NULL, &mesh, &error) != SM_OK ||
+        if (sm_import(path, NULL, &mesh, NULL, &error) != SM_OK ||
             sm_mesh_prepare(&mesh, path, &error) != SM_OK)
             fail_msg("%s", error.text);
         RefSurfaceMap map = map_of(&mesh, wanted[n].kind);

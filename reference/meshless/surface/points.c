@@ -1,17 +1,12 @@
 #include "points.h"
 
-#include <errno.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
 #include "../../../lib/mesh/import.h"
-#include "../../../lib/system/file.h"
 #include "../../../lib/vector.h"
-
-enum { LINE = 1 << 20 };
 
 void ref_points_free(RefPoints *points)
 {
@@ -118,107 +113,14 @@ SmCode ref_points_create(long count, const double (*position)[3], const double (
     return code;
 }
 
-/* Up to six numbers of a line; how many. */
-static int numbers(const char *line, double number[6])
-{
-    int count = 0;
-    while (count < 6) {
-        char *end;
-        number[count] = strtod(line, &end);
-        if (end == line) break;
-        count++;
-        line = end + strspn(end, " \t,;");
-    }
-    return count;
-}
-
-/* The next line into `text`; false at the file's end, and with `error` for what is no line. */
-static bool next_line(FILE *file, const char *path, long line, char *text, SmError *error)
-{
-    if (!fgets(text, LINE, file)) {
-        if (ferror(file))
-            sm_fail(error, SM_INPUT, "%s: line %ld cannot be read: %s", path, line,
-                    strerror(errno));
-        return false;
-    }
-    size_t length = strlen(text);
-    if ((length > 0 && text[length - 1] == '\n') || (length < LINE - 1 && feof(file))) return true;
-    sm_fail(error, SM_INPUT, "%s: line %ld %s: not a file of points", path, line,
-            length < LINE - 1 ? "holds a zero byte" : "has over a million characters");
-    return false;
-}
-
-/* Six numbers of the line, or if it may be `bare` three and zeros; false with `error` for others,
- * and without for a line to be skipped. */
-static bool take_line(const char *text, const char *path, long line, bool first, bool bare,
-                      double number[6], SmError *error)
-{
-    const char *begin = text + strspn(text, " \t\r\n");
-    if (*begin == 0 || *begin == '#') return false;
-    int found = numbers(begin, number);
-    if (bare && found == 3) memset(number + 3, 0, 3 * sizeof *number);
-    if (found == 6 || (bare && found == 3)) return true;
-    if (found != 1 || !first)
-        sm_fail(error, SM_INPUT,
-                bare ? "%s: line %ld is not x y z, nor x y z nx ny nz"
-                : found == 3
-                    ? "%s: line %ld has three numbers: the points have no normals; give them "
-                      "as x y z nx ny nz; " BARE
-                    : "%s: line %ld is not x y z nx ny nz",
-                path, line);
-    return false;
-}
-
-/* All lines, positions and normals in turn; NULL and a reason where one is wrong. */
-static double (*read_lines(FILE *file, const char *path, bool bare, long *count, SmError *error))[3]
-{
-    double(*row)[3] = NULL, number[6];
-    char *text = sm_alloc(LINE, 1);
-    SmError why = {0};
-    long room = 0;
-    *count = 0;
-    for (long line = 1; next_line(file, path, line, text, &why); line++) {
-        if (!take_line(text, path, line, *count == 0, bare, number, &why)) {
-            if (why.code) break;
-            continue;
-        }
-        if (*count == room) {
-            room = 2 * room + 1024;
-            row = sm_realloc(row, 2 * (size_t)room, sizeof *row);
-        }
-        memcpy(row[2 * (*count)++], number, sizeof number);
-    }
-    free(text);
-    if (!why.code && !row) sm_fail(&why, SM_INPUT, "%s: holds no points", path);
-    if (!why.code) return row;
-    free(row);
-    if (error) *error = why;
-    return NULL;
-}
-
-static SmCode read_text(const char *path, bool bare, long *count, double (**position)[3],
-                        double (**normal)[3], SmError *error)
-{
-    FILE *file = sm_file_open(path, NULL, error);
-    if (!file) return SM_INPUT;
-    double(*row)[3] = read_lines(file, path, bare, count, error);
-    fclose(file);
-    if (!row) return SM_INPUT;
-    *position = sm_alloc((size_t)*count, sizeof **position);
-    *normal = sm_alloc((size_t)*count, sizeof **normal);
-    for (long p = 0; p < *count; p++) {
-        memcpy((*position)[p], row[2 * p], sizeof **position);
-        memcpy((*normal)[p], row[2 * p + 1], sizeof **normal);
-    }
-    free(row);
-    return SM_OK;
-}
-
 bool ref_points_text(const char *path)
 {
-    const char *dot = strrchr(path, '.');
-    return dot &&
-           (!strcasecmp(dot, ".xyz") || !strcasecmp(dot, ".pts") || !strcasecmp(dot, ".txt"));
+    static const char *const suffix[] = {".xyz", ".pts", ".pwn", ".asc", ".txt"};
+    size_t length = strlen(path),
+           packed = length > 3 && !strcasecmp(path + length - 3, ".gz") ? 3 : 0;
+    for (int i = 0; i < 5 && length > packed + 4; i++)
+        if (!strncasecmp(path + length - packed - 4, suffix[i], 4)) return true;
+    return false;
 }
 
 static bool all_bare(long count, const double (*normal)[3])
@@ -231,9 +133,7 @@ static bool all_bare(long count, const double (*normal)[3])
 SmCode ref_points_rows(const char *path, bool bare, long *count, double (**position)[3],
                        double (**normal)[3], SmError *error)
 {
-    SmCode code = ref_points_text(path)
-                      ? read_text(path, bare, count, position, normal, error)
-                      : sm_import_points(path, NULL, count, position, normal, error);
+    SmCode code = sm_import_points(path, count, position, normal, error);
     if (code != SM_OK) return code;
     code =
         check(*count, (const double(*)[3]) * position, (const double(*)[3]) * normal, path, error);

@@ -24,15 +24,14 @@ SmCode ref_points_create(long count, const double (*position)[3], const double (
                          const char *name, RefPoints *points, SmError *error);
 void ref_points_free(RefPoints *points);
 
-/* Reads the points of a PLY file, or of another format that the mesh importer reads; or text: a
- * point a line, x y z nx ny nz and perhaps more, which is not read; empty lines and lines that
- * begin with # are skipped, and so is a first line that holds only a count. Text is what ends in
- * .xyz, .pts or .txt. Errors (SM_INPUT): those above, with the line's number; a line of fewer
- * numbers; SM_INPUT of a file that cannot be read. */
+/* Reads the points of a PLY file, or of another mesh file without triangles; or text: a point a
+ * line, x y z nx ny nz and perhaps more, which is not read; empty lines and lines that begin with #
+ * are skipped, and the first line may be their count. Text is what ends in .xyz, .pts, .pwn, .asc
+ * or .txt. Errors (SM_INPUT): those above; those of reading (lib/mesh/reader.h). */
 SmCode ref_points_read(const char *path, RefPoints *points, SmError *error);
 
-/* All rows of such a file, a position and a normal each, for the caller to free. With `bare` lines
- * of text may have three numbers alone, and PLY files no normals: theirs are zero. Errors:
+/* All rows of such a file, a position and a normal each, for the caller to free. With `bare`
+ * they may have no normals: theirs are zero. Errors:
  * reading's, and ref_points_create()'s of numbers and normals; SM_INPUT, without `bare`, where no
  * point has a normal. */
 SmCode ref_points_rows(const char *path, bool bare, long *count, double (**position)[3],

@@ -202,14 +202,14 @@ TEST(text_files)
     ref_points_free(&points);
     static const struct {
         const char *text, *says;
-    } wrong[] = {{"", "no points"},
-                 {"1 2 3\n4 5 6\n", "line 1 has three numbers"},
-                 {"1 2 3 0 0 1\n1 2 x 0 0 1\n", "line 2 is not"},
+    } wrong[] = {{"", "the file is empty"},
+                 {"1 2 3\n4 5 6\n", "the points have no normals"},
+                 {"1 2 3 0 0 1\n1 2 x 0 0 1\n", "line 2: 'x' is not a number"},
                  {"1 2 3 117 73 49\n", "normal of length 146"},
                  {"1 2 3 255 0 0\n", "'run --engine shell' takes points without"},
                  {"1 2 3 0 0 nan\n", "has a normal that is no number"},
-                 {"1 2 nan 0 0 1\n", "no number"},
-                 {"1 2 1e999 0 0 1\n", "no number"},
+                 {"1 2 nan 0 0 1\n", "the z of a vertex is not a finite number"},
+                 {"1 2 1e999 0 0 1\n", "not a finite number"},
                  {"1 2 3 0 0 1\n1 2 4 0 0 1\n", "too few"},
                  {"1 2 3 0 0 0\n", "no normals"}};
     for (size_t n = 0; n < sizeof wrong / sizeof *wrong; n++) {
@@ -220,7 +220,7 @@ TEST(text_files)
     memset(end, '7', 2000);
     strcpy(end + 2000, "\n1 2 3 4\n");
     assert_int_equal(read_points(text, &points, &error), SM_INPUT);
-    assert_non_null(strstr(error.text, "line 2 is not"));
+    assert_non_null(strstr(error.text, "line 2: a line of 4 numbers"));
     end = text;
     for (int p = 0; p < 60; p++) end += sprintf(end, "%de-100 %d 0 0 0 1\n", p, 0);
     assert_int_equal(read_points(text, &points, &error), SM_INPUT);
@@ -255,5 +255,5 @@ TEST(ply_files)
     ref_points_free(&points);
     const char *mesh = write_text("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     assert_int_equal(ref_points_read(mesh, &points, &error), SM_INPUT);
-    assert_non_null(strstr(error.text, "no points"));
+    assert_non_null(strstr(error.text, "no points alone"));
 }
