@@ -213,8 +213,8 @@ TEST(bad_clouds_are_one_clear_line)
         {"run absent.xyz --engine meshless", 3, "absent.xyz: "},
         {"run bare.xyz", 3, "bare.xyz"},
         {"run torn.ply --engine meshless", 3,
-         "torn.ply: line 12: the y of a vertex is not a finite"},
-        {"run torn.ply --engine shell", 3, "torn.ply: line 12: the y of a vertex is not a finite"},
+         "torn.ply: line 11: the y of a vertex is not a finite"},
+        {"run torn.ply --engine shell", 3, "torn.ply: line 11: the y of a vertex is not a finite"},
     };
     make_mistakes(mistakes, sizeof mistakes / sizeof *mistakes);
 }

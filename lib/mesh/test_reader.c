@@ -281,66 +281,45 @@ TEST(binary_off)
     }
 }
 
-static const char *const types[2][8] = {
-    {"char", "uchar", "short", "ushort", "int", "uint", "float", "double"},
-    {"int8", "uint8", "int16", "uint16", "int32", "uint32", "float32", "float64"}};
-
-/* Appends a number as the format has it. */
+/* Appends a number as the format has it: 0 is ASCII, 2 big-endian. */
 static char *put_ply(char *at, int format, SmNumberType type, int value)
 {
     return format ? put(at, type, format == 2, value) : at + sprintf(at, "%d ", value);
 }
 
-/* A tetrahedron: format 0 to 2; types of coordinates, lists' counts and corners; `odd` has the
- * faces first, other properties between those that count, and an element that nobody knows. */
-static size_t make_ply(char *bytes, int format, SmNumberType of, SmNumberType list,
-                       SmNumberType corner, bool odd)
+/* A tetrahedron with its faces first, and numbers of these types. */
+static size_t make_ply(char *bytes, int format, SmNumberType of, SmNumberType corner)
 {
     static const char *const formats[] = {"ascii", "binary_little_endian", "binary_big_endian"};
-    const char *const *name = types[odd];
-    char *at = bytes + sprintf(bytes, "ply\r\nformat %s 1.0\r\n", formats[format]);
-    for (int part = 0; part < 2; part++)
-        if (part == odd)
-            at += sprintf(
-                at, "element vertex 4\r\n%sproperty %s %c\r\nproperty %s y\r\nproperty %s %c\r\n",
-                odd ? "property list uchar short l\r\nproperty double nx\r\n" : "", name[of],
-                odd ? 'z' : 'x', name[of], name[of], odd ? 'x' : 'z');
-        else
-            at += sprintf(at, "element face 4\r\nproperty list %s %s vertex_ind%s\r\n%s",
-                          name[list], name[corner], odd ? "ices" : "ex",
-                          odd ? "property uchar red\r\nelement odd 1\r\nproperty int i\r\n" : "");
-    at += sprintf(at, "end_header\r\n");
-    for (int part = 0; part < 2; part++)
-        for (int i = 0; i < 4 + (odd && part == 0); i++) {
-            bool vertex = part == odd;
-            if (i == 4) {
-                at = put_ply(at, format, SM_I32, 7);
-                continue;
-            }
-            if (!vertex) at = put_ply(at, format, list, 3);
-            if (vertex && odd) {
-                at = put_ply(at, format, SM_U8, i % 3);
-                for (int l = 0; l < i % 3; l++) at = put_ply(at, format, SM_I16, -9);
-                at = put_ply(at, format, SM_F64, 1);
-            }
-            for (int c = 0; c < 3; c++)
-                at = vertex ? put_ply(at, format, of, i == (odd ? 3 - c : c + 1))
-                            : put_ply(at, format, corner, buffer.index[3 * i + c]);
-            if (!vertex && odd) at = put_ply(at, format, SM_U8, 10);
-        }
+    static const char *const types[] = {"char", "uint8",  "short",   "uint16",
+                                        "int",  "uint32", "float32", "double"};
+    char *at = bytes;
+    at += sprintf(at,
+                  "ply\r\nformat %s 1.0\r\nelement face 4\r\nproperty list %s %s vertex_index\r\n",
+                  formats[format], types[of], types[corner]);
+    at += sprintf(at, "element vertex 4\r\nproperty %s z\r\nproperty list uchar short l\r\n",
+                  types[of]);
+    at += sprintf(at, "property %s x\r\nproperty %s y\r\nend_header\r\n", types[of], types[of]);
+    for (int f = 0; f < 4; f++) {
+        at = put_ply(at, format, of, 3);
+        for (int c = 0; c < 3; c++) at = put_ply(at, format, corner, buffer.index[3 * f + c]);
+    }
+    for (int v = 0; v < 4; v++) {
+        at = put_ply(at, format, of, v == 3);
+        at = put_ply(at, format, SM_U8, v);
+        for (int l = 0; l < v; l++) at = put_ply(at, format, SM_I16, -9);
+        for (int d = 1; d < 3; d++) at = put_ply(at, format, of, v == d);
+    }
     return (size_t)(at - bytes);
 }
 
 TEST(ply_of_every_type)
 {
     char bytes[1024];
-    for (int n = 0; n < 3 * 8 * 8 * 2; n++) {
-        int a = n / 6 % 8, b = n / 48;
-        size_t size = make_ply(bytes, n % 3, (SmNumberType)a, (SmNumberType)((a + b) % 8),
-                               (SmNumberType)b, n / 3 % 2);
+    for (int n = 0; n < 3 * 8 * 8; n++) {
+        size_t size = make_ply(bytes, n % 3, (SmNumberType)(n / 3 % 8), (SmNumberType)(n / 24));
         expect_all("a.ply", bytes, size, 4, sixth, "");
-        if (a != b) continue;
-        while (size > 20) refuse_bytes("a.ply", bytes, size -= 3, "");
+        while (n % 5 == 0 && size > 20) refuse_bytes("a.ply", bytes, size -= 3, "");
     }
 }
 
@@ -401,29 +380,16 @@ static size_t make_stl(char *bytes, const char *header, uint32_t count, size_t t
 
 TEST(binary_stl)
 {
-    static const struct {
-        const char *header;
-        uint32_t count;
-        size_t trailing;
-        int filled;
-        const char *says;
-    } file[] = {{"x", 4, 0, 0, NULL},
-                {"solid part", 4, 2, 1, NULL},
-                {"", 0, 0, 0, NULL},
-                {"", UINT32_MAX, 0, 0, NULL},
-                {"", 4, 400, 0, NULL},
-                {"", 2, 0, 0, "byte 80: its header counts 2 triangles, and 100 bytes follow"},
-                {"", 5, 0, 0, "byte 80: its header counts 5 triangles, and it holds 4"},
-                {"", 4, 50, 1, "50 bytes follow"}};
     char bytes[1024];
-    for (size_t f = 0; f < sizeof file / sizeof *file; f++) {
-        size_t size =
-            make_stl(bytes, file[f].header, file[f].count, file[f].trailing, file[f].filled);
-        if (file[f].says)
-            refuse_bytes("a.stl", bytes, size, file[f].says);
-        else
-            expect_all("a.stl", bytes, size, 4, sixth, "");
-    }
+    expect_all("a.stl", bytes, make_stl(bytes, "solid part", 4, 2, 1), 4, sixth, "");
+    expect_all("a.stl", bytes, make_stl(bytes, "", 0, 0, 0), 4, sixth, "");
+    expect_all("a.stl", bytes, make_stl(bytes, "", UINT32_MAX, 0, 0), 4, sixth, "");
+    expect_all("a.stl", bytes, make_stl(bytes, "x", 4, 400, 0), 4, sixth, "");
+    refuse_bytes("a.stl", bytes, make_stl(bytes, "", 2, 0, 0),
+                 "byte 80: its header counts 2 triangles, and 100 bytes follow");
+    refuse_bytes("a.stl", bytes, make_stl(bytes, "", 5, 0, 0),
+                 "byte 80: its header counts 5 triangles, and it holds 4");
+    refuse_bytes("a.stl", bytes, make_stl(bytes, "", 4, 50, 1), "50 bytes follow");
     refuse_bytes("a.stl", bytes, 83, "byte 0: the file ends in its header");
     make_stl(bytes, "", 4, 0, 0);
     memset(bytes + 84 + 16, 0xff, 4);
