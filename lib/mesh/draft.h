@@ -50,6 +50,9 @@ bool sm_draft_fail_word(SmDraft *draft, const char *what);
 
 /* ---- text */
 
+/* Leaves out the zero bytes that some programs fill a text file up with. */
+void sm_draft_trim(SmDraft *draft);
+
 /* Finds the next word of this line. Asks. */
 bool sm_draft_word(SmDraft *draft);
 

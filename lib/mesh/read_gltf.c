@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define FAIL(...) sm_draft_fail(gltf->draft, __VA_ARGS__)
+
 enum { DEEPEST = 256 }; /* nodes within nodes: bounds the stack */
 enum { POINTS, LINES, LINE_LOOP, LINE_STRIP, TRIANGLES, STRIP, FAN };
 
@@ -41,7 +43,7 @@ static bool unpack(Gltf *gltf, json_t *object, const char *format, ...)
     va_start(arguments, format);
     bool good = !json_vunpack_ex(object, &why, 0, format, arguments);
     va_end(arguments);
-    return good || sm_draft_fail(gltf->draft, "%s" SM_AGAIN, why.text);
+    return good || FAIL("%s" SM_AGAIN, why.text);
 }
 
 static json_t *get_item(Gltf *gltf, const char *list, double index)
@@ -50,7 +52,7 @@ static json_t *get_item(Gltf *gltf, const char *list, double index)
     bool inside = index >= 0 && index < (double)json_array_size(array);
     json_t *item = inside ? json_array_get(array, (size_t)index) : NULL;
     if (json_is_object(item)) return item;
-    sm_draft_fail(gltf->draft, "%s[%.0f] is not in the file" SM_AGAIN, list, index);
+    FAIL("%s[%.0f] is not in the file" SM_AGAIN, list, index);
     return NULL;
 }
 
@@ -62,18 +64,16 @@ static bool check_version(Gltf *gltf)
     const json_t *required = json_object_get(gltf->root, "extensionsRequired");
     const char *version;
     if (!unpack(gltf, gltf->root, "{s:{s:s}}", "asset", "version", &version)) return false;
-    if (version[0] != '2')
-        return sm_draft_fail(gltf->draft, "glTF %.20s is not read; export it as glTF 2.0", version);
+    if (version[0] != '2') return FAIL("glTF %.20s is not read; export it as glTF 2.0", version);
     for (size_t i = 0; i < json_array_size(required); i++) {
         const char *name = json_string_value(json_array_get(required, i));
         size_t known = 0;
         while (known < 7 && strncmp(name ? name : "", harmless[known], strlen(harmless[known])))
             known++;
         if (known == 7)
-            return sm_draft_fail(gltf->draft,
-                                 "it needs the extension %.60s, which is not read; export it "
-                                 "without",
-                                 name ? name : "of no name");
+            return FAIL("it needs the extension %.60s, which is not read; export it "
+                        "without",
+                        name ? name : "of no name");
     }
     return true;
 }
@@ -112,15 +112,12 @@ static bool read_beside(Gltf *gltf, const char *uri, Buffer *buffer)
     char *name = sm_alloc(strlen(uri) + 1, 1);
     unsigned char *bytes = NULL;
     decode_name(uri, name);
-    bool good = file->beside && file->beside(file->of, name, &bytes, &buffer->size);
+    if (!file->beside || !file->beside(file->of, name, &bytes, &buffer->size))
+        FAIL("it needs '%.100s', which is not in its folder; put it there, or export as .glb",
+             name);
     buffer->owned = (char *)bytes;
-    if (!good)
-        sm_draft_fail(gltf->draft,
-                      "it needs '%.100s', which is not in its folder; put it there, or export "
-                      "as .glb",
-                      name);
     free(name);
-    return good;
+    return bytes != NULL;
 }
 
 static bool read_buffer(Gltf *gltf, size_t index)
@@ -131,17 +128,16 @@ static bool read_buffer(Gltf *gltf, size_t index)
     double length;
     if (!json || !unpack(gltf, json, "{s:F, s?s}", "byteLength", &length, "uri", &uri))
         return false;
-    const char *data = uri && !strncmp(uri, "data:", 5) ? strstr(uri, ";base64,") : NULL;
     if (!uri && index == 0) *buffer = gltf->chunk;
     if (!uri && !buffer->bytes) return true; /* an extension's; refused where it is used */
+    const char *data = uri && !strncmp(uri, "data:", 5) ? strstr(uri, ";base64,") : NULL;
     if (data && !decode_base64(data + 8, buffer))
-        return sm_draft_fail(gltf->draft, "buffers[%zu] is not base64" SM_AGAIN, index);
+        return FAIL("buffers[%zu] is not base64" SM_AGAIN, index);
     if (uri && !data && !read_beside(gltf, uri, buffer)) return false;
     if (buffer->owned) buffer->bytes = buffer->owned;
     gltf->most += buffer->owned ? (double)buffer->size : 0;
-    return length <= (double)buffer->size ||
-           sm_draft_fail(gltf->draft, "buffers[%zu] has %zu of its %.0f bytes" SM_AGAIN, index,
-                         buffer->size, length);
+    if (length <= (double)buffer->size) return true;
+    return FAIL("buffers[%zu] has %zu of %.0f bytes" SM_AGAIN, index, buffer->size, length);
 }
 
 static bool read_buffers(Gltf *gltf)
@@ -168,7 +164,7 @@ typedef struct {
 static bool set_type(Gltf *gltf, double type, Elements *elements)
 {
     if (!(type >= 5120 && type <= 5126 && type != 5124))
-        return sm_draft_fail(gltf->draft, "%.0f is not a type of numbers in glTF" SM_AGAIN, type);
+        return FAIL("%.0f is not a type of numbers in glTF" SM_AGAIN, type);
     elements->type = (SmNumberType)(type - 5120);
     return true;
 }
@@ -185,10 +181,11 @@ static bool find_elements(Gltf *gltf, double view, double offset, double count, 
         return false;
     bool inside = index >= 0 && index < (double)gltf->buffers;
     const Buffer *buffer = inside ? &gltf->buffer[(size_t)index] : NULL;
-    if (!buffer || !buffer->bytes || start < 0 || start + length > (double)buffer->size ||
-        elements->stride < size || elements->stride > 1e9 || offset < 0 || count < 0 ||
-        count > INT_MAX || (count > 0 && offset + (count - 1) * elements->stride + size > length))
-        return sm_draft_fail(gltf->draft, "an accessor reaches beyond its buffer" SM_AGAIN);
+    if (!buffer || !buffer->bytes || start < 0 || length < 0 ||
+        start + length > (double)buffer->size || elements->stride < size ||
+        elements->stride > 1e9 || offset < 0 || count < 0 || count > INT_MAX ||
+        (count > 0 && offset + (count - 1) * elements->stride + size > length))
+        return FAIL("an accessor reaches beyond its buffer" SM_AGAIN);
     elements->at = buffer->bytes + (size_t)start + (size_t)offset;
     return true;
 }
@@ -220,8 +217,7 @@ static bool apply_sparse(Gltf *gltf, json_t *sparse, Elements *values, double co
         double element;
         copy_element(&indices, i, &element);
         if (!(element >= 0 && element < count && element == floor(element)))
-            return sm_draft_fail(gltf->draft, "a sparse accessor changes element %.0f" SM_AGAIN,
-                                 element);
+            return FAIL("a sparse accessor changes element %.0f" SM_AGAIN, element);
         copy_element(values, i, value + (size_t)element * values->parts);
     }
     return true;
@@ -247,7 +243,7 @@ static double *read_accessor(Gltf *gltf, json_t *object, const char *key, const 
     bool good = set_type(gltf, type, &elements);
     if (good &&
         (strcmp(is, kind) != 0 || !(number >= 0 && number <= fmin(3 * gltf->most, INT_MAX))))
-        good = sm_draft_fail(gltf->draft, "%s is not %s, or too many" SM_AGAIN, key, kind);
+        good = FAIL("%s is not %s, or too many" SM_AGAIN, key, kind);
     bool given = !sparse || view >= 0;
     if (!good || (given && !find_elements(gltf, view, offset, number, &elements))) return NULL;
     double *value = sm_alloc((size_t)number * elements.parts, sizeof *value);
@@ -311,11 +307,10 @@ static bool check_number(Gltf *gltf, double vertices, double triangles)
     if ((double)mesh->vertex_count + vertices <= 3 * gltf->most &&
         (double)mesh->triangle_count + triangles <= gltf->most)
         return true;
-    return sm_draft_fail(gltf->draft,
-                         "it uses its parts so often that they make more than %.2g million "
-                         "triangles, which a file of its size does not hold: export one of each "
-                         "part",
-                         gltf->most / 1e6);
+    return FAIL("it uses its parts so often that they make more than %.2g million "
+                "triangles, which a file of its size does not hold: export one of each "
+                "part",
+                gltf->most / 1e6);
 }
 
 static bool add_vertices(Gltf *gltf, const Transform *transform, const double *position, long count)
@@ -349,13 +344,6 @@ static bool add_triangles(Gltf *gltf, int mode, bool mirrored, const double *ind
     return true;
 }
 
-static void leave_out(SmDraft *draft, int mode, long corners)
-{
-    draft->left_out.points += mode == POINTS ? corners : 0;
-    if (mode == POINTS || !corners) return;
-    draft->left_out.lines += mode == LINES ? corners / 2 : corners - (mode == LINE_STRIP);
-}
-
 /* Adds a primitive's vertices and triangles; of points wanted, its points. */
 static bool add_primitive(Gltf *gltf, json_t *primitive, const Transform *transform)
 {
@@ -370,21 +358,20 @@ static bool add_primitive(Gltf *gltf, json_t *primitive, const Transform *transf
         return sm_draft_fail(
             draft, "it uses the extension %.60s, which is not read; export it without", name);
     long vertices, corners, known = draft->mesh.vertex_count;
-    double *position = read_accessor(gltf, attributes, "POSITION", "VEC3", &vertices);
-    double *index = NULL, volume[3];
-    bool good = position != NULL, solid = mode >= TRIANGLES && mode <= FAN;
-    if (good && indices)
-        good = (index = read_accessor(gltf, primitive, "indices", "SCALAR", &corners)) != NULL;
-    else
-        corners = good ? vertices : 0;
-    sm_cross(transform->row[0], transform->row[1], volume);
+    double *position = read_accessor(gltf, attributes, "POSITION", "VEC3", &vertices), across[3];
+    double *index = indices ? read_accessor(gltf, primitive, "indices", "SCALAR", &corners) : NULL;
+    bool good = position && (index || !indices), solid = mode >= TRIANGLES && mode <= FAN;
+    if (good && !indices) corners = vertices;
+    sm_cross(transform->row[0], transform->row[1], across);
+    bool mirrored = sm_dot(across, transform->row[2]) < 0;
+    if (good && mode == POINTS) draft->left_out.points += corners;
+    if (good && mode != POINTS && !solid)
+        draft->left_out.lines += mode == LINES ? corners / 2 : corners - (mode == LINE_STRIP);
     if (good && solid && !draft->of_points)
-        good = add_triangles(gltf, mode, sm_dot(volume, transform->row[2]) < 0, index, corners) &&
+        good = add_triangles(gltf, mode, mirrored, index, corners) &&
                (draft->largest < known + vertices ||
-                sm_draft_fail(draft, "a triangle names vertex %ld of %ld (counted from 0)" SM_AGAIN,
-                              draft->largest - known, vertices));
-    else if (good && !solid)
-        leave_out(draft, mode, corners);
+                FAIL("a triangle names vertex %ld of %ld (counted from 0)" SM_AGAIN,
+                     draft->largest - known, vertices));
     if (good && (draft->of_points ? mode == POINTS : solid))
         good = add_vertices(gltf, transform, position, vertices);
     sm_free_all(position, index);
@@ -397,8 +384,8 @@ static bool add_mesh(Gltf *gltf, json_t *mesh, const Transform *transform)
     const json_t *weights = json_object_get(mesh, "weights");
     for (size_t w = 0; w < json_array_size(weights); w++)
         if (json_number_value(json_array_get(weights, w)) != 0)
-            return sm_draft_fail(gltf->draft, "it uses morph targets, which are not read; apply "
-                                              "them before exporting");
+            return FAIL("it uses morph targets, which are not read; apply "
+                        "them before exporting");
     for (size_t p = 0; p < json_array_size(list); p++)
         if (!add_primitive(gltf, json_array_get(list, p), transform)) return false;
     return true;
@@ -416,8 +403,8 @@ static bool add_instances(Gltf *gltf, json_t *mesh, json_t *attributes, const Tr
     for (int k = 0; k < 3 && good; k++) {
         if (!json_object_get(attributes, key[k])) continue;
         value[k] = read_accessor(gltf, attributes, key[k], kind[k], &own);
-        good = value[k] && (count < 0 || count == own ||
-                            sm_draft_fail(gltf->draft, "instances of different counts" SM_AGAIN));
+        good = value[k] &&
+               (count < 0 || count == own || FAIL("instances of different counts" SM_AGAIN));
         count = own;
     }
     for (long i = 0; i < count && good; i++) {
@@ -445,8 +432,7 @@ static bool add_nodes(Gltf *gltf, const json_t *list, const Transform *outer, in
                     &instances))
             return false;
         if (depth == DEEPEST || json_object_get(node, " "))
-            return sm_draft_fail(gltf->draft,
-                                 "a node is in two others, or in more than %d" SM_AGAIN, DEEPEST);
+            return FAIL("a node is in two others, or in more than %d" SM_AGAIN, DEEPEST);
         json_object_set_new(node, " ", json_true()); /* it was here */
         Transform whole = compose(outer, &own);
         if (index >= 0 && !(mesh = get_item(gltf, "meshes", index))) return false;
@@ -463,7 +449,7 @@ static bool add_scene(Gltf *gltf)
     double number = 0;
     size_t count = json_array_size(json_object_get(gltf->root, "scenes"));
     if (!unpack(gltf, gltf->root, "{s?F}", "scene", &number)) return false;
-    if (!count) return sm_draft_fail(gltf->draft, "it has no scene; export it with one");
+    if (!count) return FAIL("it has no scene; export it with one");
     gltf->draft->left_out.scenes = (long)count - 1;
     const json_t *scene = get_item(gltf, "scenes", number);
     return scene && add_nodes(gltf, json_object_get(scene, "nodes"), &identity, 0);
@@ -505,7 +491,7 @@ static bool load_json(Gltf *gltf, const Buffer *text)
         gltf->root = json_loadb(plain, text->size, JSON_ALLOW_NUL, &why);
         free(plain);
     }
-    return gltf->root || sm_draft_fail(gltf->draft, "line %d: %s" SM_AGAIN, why.line, why.text);
+    return gltf->root || FAIL("line %d: %s" SM_AGAIN, why.line, why.text);
 }
 
 bool sm_read_gltf(SmDraft *draft)

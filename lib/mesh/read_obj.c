@@ -57,6 +57,7 @@ bool sm_read_obj(SmDraft *draft)
 {
     draft->comment = '#';
     draft->joined = true;
+    sm_draft_trim(draft);
     const char *zero = memchr(draft->begin, 0, (size_t)(draft->end - draft->begin));
     if (zero) {
         draft->at = zero;

@@ -96,6 +96,7 @@ bool sm_read_off(SmDraft *draft)
     draft->comment = '#';
     if (!sm_draft_find(draft)) return sm_draft_fail(draft, "the file holds only comments");
     if (!read_keyword(draft, &kind)) return false;
+    if (!kind.binary) sm_draft_trim(draft);
     int size = kind.binary ? 12 + 12 * kind.normal + 16 * kind.colour + 8 * kind.place : 6;
     if (!read_counts(draft, size, &vertices, &faces)) return false;
     sm_draft_reserve(draft, vertices, faces);

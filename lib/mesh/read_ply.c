@@ -204,7 +204,10 @@ static bool check_element(Ply *ply, const Element *element)
 static bool read_body(Ply *ply)
 {
     SmDraft *draft = ply->draft;
-    if (!ply->ascii) begin_binary(draft);
+    if (ply->ascii)
+        sm_draft_trim(draft);
+    else
+        begin_binary(draft);
     for (int e = 0; e < ply->elements; e++) {
         const Element *element = &ply->element[e];
         if (!check_element(ply, element)) return false;

@@ -26,6 +26,7 @@ bool sm_read_rows(SmDraft *draft)
     int width = 0;
     draft->comment = '#';
     draft->commas = true;
+    sm_draft_trim(draft);
     for (; sm_draft_find(draft); sm_draft_line(draft)) {
         int count = 0;
         for (; count < 6 && sm_draft_word(draft); count++)

@@ -104,10 +104,14 @@ static bool read_text(SmDraft *draft)
            sm_draft_fail(draft, "the last solid has no end" SM_AGAIN);
 }
 
-/* Text has no zero byte, and the count of a binary file has one up to 2^24 triangles. */
+/* Text has no zero byte but at its end, and the count of a binary file has one up to 2^24
+ * triangles. */
 bool sm_read_stl(SmDraft *draft)
 {
+    const char *end = draft->end;
+    sm_draft_trim(draft);
     size_t size = (size_t)(draft->end - draft->begin);
-    return memchr(draft->begin, 0, size < 1024 ? size : 1024) ? read_binary(draft)
-                                                              : read_text(draft);
+    if (!memchr(draft->begin, 0, size < 1024 ? size : 1024)) return read_text(draft);
+    draft->end = end;
+    return read_binary(draft);
 }

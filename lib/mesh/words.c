@@ -24,6 +24,11 @@ static bool divides_words(const SmDraft *draft, const char *at)
     return draft->joined && *at == '\\' && end_of_line(at + 1, draft->end);
 }
 
+void sm_draft_trim(SmDraft *draft)
+{
+    while (draft->end > draft->at && !draft->end[-1]) draft->end--;
+}
+
 bool sm_draft_word(SmDraft *draft)
 {
     for (; draft->at < draft->end && divides_words(draft, draft->at); draft->at++) {
