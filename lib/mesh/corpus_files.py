@@ -65,7 +65,7 @@ class Case(NamedTuple):
     data: bytes
     wanted: Optional[Body]  # None: must be refused
     may_refuse: bool = False  # a refusal is right, too
-    says: str = ""  # regular expression that a refusal contains
+    says: str = ""  # regular expression: in a refusal, or in the remark on what was left out
     beside: dict = {}  # other files, by name
     points: int = 0  # of a file of points
 
@@ -130,9 +130,11 @@ def obj_files(offset):
         "rgba": obj(body, vertex="{} 0.5 0.25 1 1"), "long-comment": "#" + 300000 * "x" + "\n" + plain,
         "comments": "# a\\\n" + obj(body, vertex="{} # here # too", extra="# another\\") + "# end\\\n",
         "continued": plain.replace(" ", " \\\n"), "continued-crlf": plain.replace(" ", " \\\r\n"),
-        "continued-cr": plain.replace("\n", "\r").replace(" ", " \\\r"), "points-lines": obj(body, extra="p 1 2\nl 1 2 3\nvp 0.5\n"),
+        "continued-cr": plain.replace("\n", "\r").replace(" ", " \\\r"),
         "names": obj(body, extra="mtllib none.mtl\no Gr\xf6\xdfe \xe9\ng a b\ns off\nusemtl \xfc\ns 1"),
+        "nan-normal": obj(body, extra="vn nan nan nan"),
         "numbers": "".join(f"v {x:+.12E} {y:+.3f} {z:012.3f}\n" for x, y, z in body.vertices) + plain[plain.index("f"):]})
+    yield from files("obj", body, {"points-lines": obj(body, extra="p 1 2\nl 1 2 3\nvp 0.5")}, says="points.*lines")
     yield from files("obj", body.and_copy(copy), {"two": obj(body.and_copy(copy), extra="o a")})
     yield from files("obj", body, {"late": "".join(sorted(plain.splitlines(True), key=lambda line: line[0]))}, may_refuse=True)
 
@@ -186,6 +188,7 @@ def ply_elements(body):
     yield "zyx", (("vertex", XYZ[::-1], [v[::-1] for v in points]), faces)
     yield "colours", (("vertex", XYZ + colour, [v + (1, 2, 255) for v in points]), faces)
     yield "normals-first", (("vertex", normal + XYZ, [(0, 0, 1, *v) for v in points]), faces)
+    yield "nan-quality", (("vertex", (*XYZ, "float quality", "double q"), [v + (NAN, INF) for v in points]), faces)
     yield "between", (("vertex", (XYZ[0], "uchar a", XYZ[1], "short s", XYZ[2]), [(x, 10, y, -7, z) for x, y, z in points]), faces)
     yield "list-in-vertex", (("vertex", ("list ushort double w", *XYZ), [((9, 9)[:i % 3], *v) for i, v in enumerate(points)]), faces)
     yield "texcoord", (vertex, ("face", ("list uchar float texcoord", CORNERS, "int texnumber", "list int8 uint8 tags"),
@@ -321,11 +324,12 @@ def off_files(offset):
     commented = off(body, "OFF # key\n# before\n", "{} # v\n\n# next", "{} # f", "{} {} # edges\n 0 # counts")
     yield from files("off", body, {
         "plain": plain, "colours": off(body, "COFF\n", "{} 255 0 0 255"), "float-colours": off(body, "COFF\n", "{} 1.0 0.5 0 1"),
-        "normals": off(body, "NOFF\n", "{} 0 0 1"), "texture": off(body, "STOFF\n", "{} 0.5 0.5"), "key-line": off(body, "OFF "),
+        "normals": off(body, "NOFF\n", "{} 0 0 1"), "nan-normals": off(body, "NOFF\n", "{} nan nan nan"),
+        "texture": off(body, "STOFF\n", "{} 0.5 0.5"), "edges-below": off(body, counts="{} {}\n99"), "key-line": off(body, "OFF "),
         "all": off(body, "STCNOFF\n", "{} 0 0 1 0.1 0.2 0.3 1 0.5 0.5"), "face-rgb": off(body, face="{} 255 0 0"),
         "face-rgba": off(body, face="{} 0.1 0.2 0.3 1"), "face-index": off(body, face="{} 3"), "edges": off(body, counts="{} {} 99"),
-        "modelnet": off(body, "OFF"), "comments": "# first\n" + commented + "# last", "words": "OFF\n" + head.replace(" ", "\n") + faces,
-        "points-lines": off(body._replace(faces=body.faces + [(0, 1), (2,)]))})
+        "modelnet": off(body, "OFF"), "comments": "# first\n" + commented + "# last", "words": "OFF\n" + head.replace(" ", "\n") + faces})
+    yield from files("off", body, {"points-lines": off(body._replace(faces=body.faces + [(0, 1), (2,)]))}, says="points.*lines")
     yield from files("off", body, {
         "no-edges": off(body, counts="{} {}"), "no-edges-key-line": off(body, "OFF ", counts="{} {}"), "no-key": off(body, ""),
         "rgb": off(body, "COFF\n", "{} 255 0 0"), "unannounced": off(body, vertex="{} 255 0 0 255"), "lower": off(body, "off\n")},

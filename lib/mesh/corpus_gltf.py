@@ -147,8 +147,9 @@ def gltf_nodes():
 
 def gltf_files():
     for name, scene, body in (*gltf_primitives(), *gltf_nodes()):
-        yield Case(f"gltf-{name}.gltf", scene.text(), body)
-        yield Case(f"gltf-{name}.glb", scene.binary(), body)
+        says = {"points-lines": "points.*lines", "other-scene": "scene"}.get(name, "")
+        yield Case(f"gltf-{name}.gltf", scene.text(), body, says=says)
+        yield Case(f"gltf-{name}.glb", scene.binary(), body, says=says)
     good, weighted = Gltf(), Gltf(targets=[{"POSITION": 0}])
     beside = {"b c.bin": bytes(good.data), "sub/b.bin": bytes(good.data)}
     yield Case("gltf-beside.gltf", good.text("b%20c.bin"), TETRA, beside=beside)
@@ -158,6 +159,7 @@ def gltf_files():
     yield from files("gltf", TETRA, {name: CHANGES[name](good.text()) for name in ("crlf", "cr", "bom", "tabs", "blank")})
     yield from files("gltf", TETRA, {"mime": good.text().replace(b"octet-stream", b"gltf-buffer")})
     yield from files("glb", TETRA, {"chunks": good.binary(more=((b"ABCD", b"1234", b" "),))})
+    yield from files("glb", TETRA, {"length": good.binary(length=100)}, may_refuse=True)
     yield Case("gltf-gz.gltf.gz", zipped(good.text()), TETRA)
     yield Case("gltf-gz.glb.gz", zipped(good.binary()), TETRA)
     yield from files("gltf", None, {"utf16": codecs.BOM_UTF16_LE + good.text().decode().encode("utf-16-le")}, says="UTF-16")
@@ -181,7 +183,7 @@ def gltf_bad():
         "bad-restart": Gltf(TETRA._replace(faces=[(0, 1, 2, 255, 1, 2, 3)]), index="B", mode=5).text(),
         "bad-nan": Gltf(TETRA.at((math.nan, 0, 0))).text(), "bad-count": text.replace(b'"count": 4', b'"count": 400')})
     yield from files("glb", None, {"bad-cut": good.binary()[:-1], "bad-version": good.binary(version=1), "bad-words": "glTF but not quite",
-                                   "bad-length": good.binary(length=100), "bad-json": good.binary(b"{")})
+                                   "bad-json": good.binary(b"{")})
 
 
 def cases():
