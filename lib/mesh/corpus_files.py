@@ -73,7 +73,15 @@ class Case(NamedTuple):
 def files(suffix, body, texts, may_refuse=False, says=""):
     """Yields a case of each text or bytes."""
     for name, text in texts.items():
-        yield Case(f"{suffix}-{name}.{suffix}", text if isinstance(text, bytes) else text.encode("latin-1"), body, may_refuse, says)
+        data = text if isinstance(text, bytes) else text.encode("latin-1")
+        yield Case(f"{suffix}-{name}.{suffix}", data, body, may_refuse, says)
+
+
+def damaged(suffix, good, changes, others):
+    """Yields a case that must be refused of each change of a good text, and of other texts or bytes."""
+    texts = {name: good.replace(*change) for name, change in changes.items()}
+    assert good not in texts.values()
+    yield from files(suffix, None, {"bad-" + name: text for name, text in {"empty": "", **texts, **others}.items()})
 
 
 def spell(*numbers):
@@ -102,7 +110,9 @@ def changed(name, suffix, text, body):
     for change, to in CHANGES.items():
         whole = suffix != "ply" or change not in ("indent", "blank")  # those lines of a PLY header have no blanks
         yield Case(f"{name}-{change}.{suffix}", to(text) if whole else head + b"end_header\n" + to(rest), body)
+    yield Case(f"{name}-padded.{suffix}", text + bytes(2), body, may_refuse=suffix != "obj")  # as raptor_allquads.obj is
     yield Case(f"{name}-gz.{suffix}.gz", zipped(text), body)
+    yield Case(f"{name}-gz-cut.{suffix}.gz", zipped(text)[:-9], None)
     yield Case(f"{name}-gz-unnamed.{suffix}", zipped(text), body, may_refuse=True)
     for end, mark in (("le", codecs.BOM_UTF16_LE), ("be", codecs.BOM_UTF16_BE)):
         wide = text.decode("latin-1").encode("utf-16-" + end)
@@ -143,15 +153,13 @@ def obj_others():
     yield from files("obj", ROUND, {"round": obj(ROUND)})
     decimal = TRIANGLES.mapped(lambda x, y, z: (10000000.1 + 1.3 * x, 4200000.1 + 1.3 * y, 0.1 + 1.3 * z))
     yield from files("obj", decimal, {"decimal": obj(decimal)})
-    good = obj(TETRA)
-    last = "f 1 4 3\n"
-    yield from files("obj", None, {
-        "bad-empty": "", "bad-no-faces": good[:good.index("f")], "bad-nan": good.replace("v 1", "v nan"),
-        "bad-inf": good.replace("v 1", "v -inf"), "bad-huge": good.replace("v 1", "v 1e999"), "bad-word": good.replace("v 1", "v one"),
-        "bad-comma": good.replace("v 1 ", "v 1,5 "), "bad-two-numbers": good.replace("v 1 0 0", "v 1 0"), "bad-cut": good[:-4],
-        "bad-index-5": good.replace(last, "f 1 5 3"), "bad-index-0": good.replace(last, "f 0 4 3"), "bad-zero": good.replace(last, "f\0 1"),
-        "bad-index-minus-5": good.replace(last, "f 1 -5 3"), "bad-index-2-32": good.replace(last, "f 1 4294967300 3"),
-        "bad-index-word": good.replace(last, "f 1 4 3b"), "bad-words": "these are words\n"})
+    good, last = obj(TETRA), "f 1 4 3\n"
+    yield from damaged("obj", good, {
+        "nan": ("v 1", "v nan"), "inf": ("v 1", "v -inf"), "huge": ("v 1", "v 1e999"), "word": ("v 1", "v one"),
+        "comma": ("v 1 ", "v 1,5 "), "two-numbers": ("v 1 0 0", "v 1 0"), "zero": (last, "f\0 1\n"),
+        "index-5": (last, "f 1 5 3\n"), "index-0": (last, "f 0 4 3\n"), "index-minus-5": (last, "f 1 -5 3\n"),
+        "index-2-32": (last, "f 1 4294967300 3\n"), "index-word": (last, "f 1 4 3b\n")},
+        {"no-faces": good[:good.index("f")], "cut": good[:-4], "words": "these are words\n"})
 
 
 NAMES = {"b": "char int8", "B": "uchar uint8", "h": "short int16", "H": "ushort uint16", "i": "int int32", "I": "uint uint32",
@@ -183,14 +191,17 @@ def ply_elements(body):
     """Yields names and elements that all make the body."""
     points = body.vertices
     faces, vertex = ("face", (CORNERS,), [(face,) for face in body.faces]), ("vertex", XYZ, points)
-    normal, colour, many = ("float nx", "float ny", "float nz"), ("uchar red", "uchar green", "uchar alpha"), [f"float p{i}" for i in range(40)]
+    normal, colour = ("float nx", "float ny", "float nz"), ("uchar red", "uchar green", "uchar alpha")
+    many = [f"float p{i}" for i in range(40)]
     yield "plain", (vertex, faces)
     yield "zyx", (("vertex", XYZ[::-1], [v[::-1] for v in points]), faces)
     yield "colours", (("vertex", XYZ + colour, [v + (1, 2, 255) for v in points]), faces)
     yield "normals-first", (("vertex", normal + XYZ, [(0, 0, 1, *v) for v in points]), faces)
     yield "nan-quality", (("vertex", (*XYZ, "float quality", "double q"), [v + (NAN, INF) for v in points]), faces)
-    yield "between", (("vertex", (XYZ[0], "uchar a", XYZ[1], "short s", XYZ[2]), [(x, 10, y, -7, z) for x, y, z in points]), faces)
-    yield "list-in-vertex", (("vertex", ("list ushort double w", *XYZ), [((9, 9)[:i % 3], *v) for i, v in enumerate(points)]), faces)
+    between = [(x, 10, y, -7, z) for x, y, z in points]
+    yield "between", (("vertex", (XYZ[0], "uchar a", XYZ[1], "short s", XYZ[2]), between), faces)
+    lists = [((9, 9)[:i % 3], *v) for i, v in enumerate(points)]
+    yield "list-in-vertex", (("vertex", ("list ushort double w", *XYZ), lists), faces)
     yield "texcoord", (vertex, ("face", ("list uchar float texcoord", CORNERS, "int texnumber", "list int8 uint8 tags"),
                                 [((0.5,) * 6, face, -1, ()) for face in body.faces]))
     yield "vertex_index", (vertex, ("face", ("uchar red", "list int uint vertex_index"), [(7, face) for face in body.faces]))
@@ -244,15 +255,16 @@ def ply_files():
 
 def ply_bad():
     good = ply("ascii", *dict(ply_elements(TETRA))["plain"], extra="").decode()
-    changes = {"no-format": ("format ascii 1.0\n", ""), "form": ("ascii", "binary_middle_endian"), "nan": ("1 0 0", "nan 0 0"),
-               "inf": ("1 0 0", "1 inf 0"), "word": ("1 0 0", "1 a 0"), "index-4": ("1 2 3", "1 2 4"), "index-minus": ("1 2 3", "1 2 -1"),
-               "type": ("double", "quad"), "count": ("vertex 4", "vertex -4"), "no-z": ("double z", "double depth"),
-               "many": ("vertex 4", "vertex 4000000000"), "list": ("3 1 2 3", "-3 1 2 3"), "cut": ("3 0 3 2 \n", ""), "cut-face": ("3 2 \n", ""),
-               "head": (good[good.index("end_header"):], "")}
-    yield from files("ply", None, {"bad-empty": "", **{"bad-" + name: good.replace(*how) for name, how in changes.items()}})
+    yield from damaged("ply", good, {
+        "no-format": ("format ascii 1.0\n", ""), "form": ("ascii", "binary_middle_endian"), "type": ("double", "quad"),
+        "count": ("vertex 4", "vertex -4"), "many": ("vertex 4", "vertex 4000000000"), "no-z": ("double z", "double depth"),
+        "nan": ("1 0 0", "nan 0 0"), "inf": ("1 0 0", "1 inf 0"), "word": ("1 0 0", "1 a 0"), "list": ("3 1 2 3", "-3 1 2 3"),
+        "index-4": ("1 2 3", "1 2 4"), "index-minus": ("1 2 3", "1 2 -1"), "cut": ("3 0 3 2 \n", ""), "cut-face": ("3 2 \n", "")},
+        {"head": good[:good.index("end_header")]})
     for form, bad in itertools.product(("binary_little_endian", "binary_big_endian"), ("nan", "inf", "index", "cut", "count")):
         first = (float(bad), 1, 0) if bad in ("nan", "inf") else (0, 0, 0)
-        data = ply(form, ("vertex", XYZ, [first, *TETRA.vertices[1:]]), ("face", (CORNERS,), [((0, 1, 4 if bad == "index" else 3),)]))
+        faces = ("face", (CORNERS,), [((0, 1, 4 if bad == "index" else 3),)])
+        data = ply(form, ("vertex", XYZ, [first, *TETRA.vertices[1:]]), faces)
         data = data.replace(b"face 1", b"face 2000000000") if bad == "count" else data
         yield Case(f"ply-bad-{bad}-{form}.ply", data[:-1] if bad == "cut" else data, None)
 
@@ -279,9 +291,9 @@ def stl_files(offset):
     body, whole = TRIANGLES.at(offset), TRIANGLES.at([int(x) for x in offset])
     plain, copy = stl(body), (10, 0, 0)
     yield from files("stl", body, {
-        "plain": plain, "upper": plain.upper(), "title": plain.title(), "nameless": stl(body, ""), "latin": stl(body, " Gr\xf6\xdfe"),
-        "name": stl(body, " facet normal vertex 1 2 3"), "normals": stl(body, normal="nan -nan inf"),
-        "exponents": plain.replace(" 3000000.125", " 3.000000125E+06")})
+        "plain": plain, "upper": plain.upper(), "title": plain.title(), "nameless": stl(body, ""),
+        "latin": stl(body, " Gr\xf6\xdfe"), "name": stl(body, " facet normal vertex 1 2 3"),
+        "normals": stl(body, normal="nan -nan inf"), "exponents": plain.replace(" 3000000.125", " 3.000000125E+06")})
     yield from files("stl", body.and_copy(copy), {"two": plain + stl(body.at(copy), " b")})
     yield from files("stl", body, {"no-end": plain[:plain.index("endsolid")]}, may_refuse=True)
     binary = {name: stl_binary(whole, header) for name, header in HEADERS.items()}
@@ -295,13 +307,12 @@ def stl_files(offset):
 def stl_bad():
     good, binary = stl(TETRA), stl_binary(TETRA)
     yield from files("stl", TETRA, {"one-line": stl(TETRA, "").replace("\n", " ")}, may_refuse=True)
-    yield from files("stl", None, {
-        "bad-empty": "", "bad-no-facets": "solid x\nendsolid x\n", "bad-nan": good.replace("vertex 1", "vertex nan"),
-        "bad-inf": good.replace("vertex 1", "vertex inf"), "bad-word": good.replace("vertex 1 0", "vertex a 0"),
-        "bad-two-corners": good.replace("      vertex 1 0 0\n", "", 1), "bad-cut": good[:good.rindex("endloop")],
-        "bad-cut-number": good[:good.rindex("vertex") + 8], "bad-cut-binary": binary[:-1], "bad-header": binary[:84],
-        "bad-short": binary[:60], "bad-many": stl_binary(TETRA, count=0x7fffffff), "bad-one-more": stl_binary(TETRA, count=5),
-        "bad-nan-binary": stl_binary(TETRA.at((NAN, 0, 0)))})
+    yield from damaged("stl", good, {
+        "nan": ("vertex 1", "vertex nan"), "inf": ("vertex 1", "vertex inf"), "word": ("vertex 1 0", "vertex a 0"),
+        "two-corners": ("      vertex 1 0 0\n", "", 1)}, {
+            "no-facets": "solid x\nendsolid x\n", "cut": good[:good.rindex("endloop")],
+            "cut-number": good[:good.rindex("vertex") + 8], "cut-binary": binary[:-1], "header": binary[:84], "short": binary[:60],
+            "many": stl_binary(TETRA, count=0x7fffffff), "one-more": stl_binary(TETRA, count=5), "nan-binary": stl_binary(TETRA.at((NAN, 0, 0)))})
 
 
 def off(body, key="OFF\n", vertex="{}", face="{}", counts="{} {} 0"):
@@ -325,10 +336,11 @@ def off_files(offset):
     yield from files("off", body, {
         "plain": plain, "colours": off(body, "COFF\n", "{} 255 0 0 255"), "float-colours": off(body, "COFF\n", "{} 1.0 0.5 0 1"),
         "normals": off(body, "NOFF\n", "{} 0 0 1"), "nan-normals": off(body, "NOFF\n", "{} nan nan nan"),
-        "texture": off(body, "STOFF\n", "{} 0.5 0.5"), "edges-below": off(body, counts="{} {}\n99"), "key-line": off(body, "OFF "),
-        "all": off(body, "STCNOFF\n", "{} 0 0 1 0.1 0.2 0.3 1 0.5 0.5"), "face-rgb": off(body, face="{} 255 0 0"),
-        "face-rgba": off(body, face="{} 0.1 0.2 0.3 1"), "face-index": off(body, face="{} 3"), "edges": off(body, counts="{} {} 99"),
-        "modelnet": off(body, "OFF"), "comments": "# first\n" + commented + "# last", "words": "OFF\n" + head.replace(" ", "\n") + faces})
+        "texture": off(body, "STOFF\n", "{} 0.5 0.5"), "edges-below": off(body, counts="{} {}\n99"),
+        "key-line": off(body, "OFF "), "all": off(body, "STCNOFF\n", "{} 0 0 1 0.1 0.2 0.3 1 0.5 0.5"),
+        "face-rgb": off(body, face="{} 255 0 0"), "face-rgba": off(body, face="{} 0.1 0.2 0.3 1"), "face-index": off(body, face="{} 3"),
+        "edges": off(body, counts="{} {} 99"), "modelnet": off(body, "OFF"), "comments": "# first\n" + commented + "# last",
+        "words": "OFF\n" + head.replace(" ", "\n") + faces})
     yield from files("off", body, {"points-lines": off(body._replace(faces=body.faces + [(0, 1), (2,)]))}, says="points.*lines")
     yield from files("off", body, {
         "no-edges": off(body, counts="{} {}"), "no-edges-key-line": off(body, "OFF ", counts="{} {}"), "no-key": off(body, ""),
@@ -342,13 +354,12 @@ def off_bad():
     good, binary = off(TETRA), off_binary(TETRA)
     yield from files("off", None, {"4OFF": off(TETRA, "4OFF\n", "{} 1")}, says="4OFF")
     yield from files("off", TETRA, {"nOFF": off(TETRA, "nOFF\n3\n")}, may_refuse=True)
-    changes = {"nan": ("\n1 ", "\nnan "), "inf": ("\n1 ", "\n-inf "), "word": ("\n1 ", "\na "), "index-4": ("3 1 2 3", "3 1 2 4"),
-               "index-minus": ("3 1 2 3", "3 1 2 -1"), "index-2-32": ("3 1 2 3", "3 1 2 4294967299"), "corners": ("3 1 2 3", "4 1 2 3"),
-               "count": ("4 4 0", "-4 4 0"), "many": ("4 4 0", "4 4000000000 0"), "key": ("OFF", "OFT")}
-    yield from files("off", None, {
-        **{"bad-" + name: good.replace(*how) for name, how in changes.items()}, "bad-empty": "", "bad-only-key": "OFF\n",
-        "bad-cut": good[:-9], "bad-cut-face": good[:-3], "bad-cut-binary": binary[:-5],
-        "bad-index-binary": off_binary(TETRA._replace(faces=[(0, 1, 7)]))})
+    yield from damaged("off", good, {
+        "nan": ("\n1 ", "\nnan "), "inf": ("\n1 ", "\n-inf "), "word": ("\n1 ", "\na "), "index-4": ("3 1 2 3", "3 1 2 4"),
+        "index-minus": ("3 1 2 3", "3 1 2 -1"), "index-2-32": ("3 1 2 3", "3 1 2 4294967299"), "corners": ("3 1 2 3", "4 1 2 3"),
+        "count": ("4 4 0", "-4 4 0"), "many": ("4 4 0", "4 4000000000 0"), "key": ("OFF", "OFT")},
+        {"only-key": "OFF\n", "cut": good[:-9], "cut-face": good[:-3], "cut-binary": binary[:-5],
+         "index-binary": off_binary(TETRA._replace(faces=[(0, 1, 7)]))})
 
 
 def point_files(offset):
@@ -363,7 +374,8 @@ def point_files(offset):
     text = "\n".join(["# x y z", *both, ""]).encode()
     found = {f"{name}.{suffix}": "\n".join([*lines, ""]).encode() for name, lines in (("normals", both), ("bare", rows))
              for suffix in ("xyz", "pts", "txt", "asc", "pwn")}
-    found.update({"count.pts": "\n".join([str(count), *rows]).encode(), "count-normals.pts": "\n".join([str(count), *both]).encode(),
+    found.update({"count.pts": "\n".join([str(count), *rows]).encode(),
+                  "count-normals.pts": "\n".join([str(count), *both]).encode(),
                   "blocks.pwn": "\n".join([str(count), *rows, *ends]).encode(), "commas.txt": text.replace(b" ", b","),
                   "gz.xyz.gz": zipped(text), **{f"{name}.xyz": change(text) for name, change in CHANGES.items()}})
     ball = ("vertex", XYZ + ("float nx", "float ny", "float nz"), [(*p, *n) for p, n in zip(points, normals)])

@@ -103,6 +103,10 @@ def gltf_primitives():
         yield f"sparse-zeros-{index}", gltf_sparse(index, False), TETRA
     yield "no-index", Gltf(Body(corners, []), index=None), TETRA
     yield "stride", Gltf(stride=20, mode=4), TETRA
+    apart = Gltf(TETRA._replace(vertices=[x for v in TETRA.vertices for x in ((7, 7, 7), v)]), stride=12)
+    apart.json["bufferViews"][0]["byteStride"] = 24
+    apart.json["accessors"][0].update(byteOffset=12, count=4)
+    yield "interleaved", apart, TETRA
     yield "strip", Gltf(TETRA._replace(faces=[strip]), mode=5), TETRA
     yield "strip-no-index", Gltf(Body([TETRA.vertices[i] for i in strip], []), index=None, mode=5), TETRA
     fans, lines = Gltf(TETRA._replace(faces=[(3, 0, 1, 2, 0)]), mode=6), Gltf()
@@ -128,6 +132,9 @@ def gltf_nodes():
     doubled = TETRA.mapped(lambda *x: tuple(o + 2 * a for o, a in zip(FAR, x)))
     four, moves = TETRA.and_copy((10, 0, 0)).and_copy((0, 20, 0)), [(0, 0, 0), (10, 0, 0), (0, 20, 0), (10, 20, 0)]
     moved = [{"mesh": 0, "translation": move} for move in moves]
+    unnumbered = Gltf()
+    del unnumbered.json["scene"]
+    yield "no-scene-number", unnumbered, TETRA
     yield "translation", Gltf().node(translation=FAR), TETRA.at(FAR)
     yield "trs", Gltf().node(translation=FAR, rotation=(0, 0, math.sqrt(0.5), math.sqrt(0.5)), scale=(2, 1, 1)), turned
     yield "matrix", Gltf().node(matrix=(0, 2, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, *FAR, 1)), turned
@@ -168,7 +175,8 @@ def gltf_files():
     for name, says in (("EXT_nobody_knows",) * 2, ("KHR_draco_mesh_compression", "Draco"), ("EXT_meshopt_compression",) * 2):
         yield from files("gltf", None, {"required-" + name: Gltf().uses(name).text()}, says=says)
         yield from files("glb", None, {"required-" + name: Gltf().uses(name).binary()}, says=says)
-    yield from files("gltf", TETRA, {"required-texture": Gltf().uses("KHR_texture_transform").text()}, True, "KHR_texture_transform")
+    texture = "KHR_texture_transform"
+    yield from files("gltf", TETRA, {"required-texture": Gltf().uses(texture).text()}, may_refuse=True, says=texture)
     yield from files("gltf", TETRA, {"draco-used": Gltf(extensions=DRACO).uses(*DRACO, required=False).text()}, True, "Draco")
 
 
@@ -176,14 +184,15 @@ def gltf_bad():
     good = Gltf()
     text = good.text()
     yield from files("gltf", None, {
-        "bad-empty": "", "bad-cut": text[:-20], "bad-object": "{}", "bad-missing": good.text("none.bin"), "bad-web": good.text("http://a/b.bin"),
+        "bad-empty": "", "bad-cut": text[:-20], "bad-object": "{}", "bad-missing": good.text("none.bin"),
+        "bad-web": good.text("http://a/b.bin"),
         "bad-version": text.replace(b'"2.0"', b'"1.0"'), "bad-short": text.replace(b'"byteLength": 72', b'"byteLength": 720'),
         "bad-cycle": Gltf().node(children=[0]).text(), "bad-index": Gltf(TETRA._replace(faces=[(0, 1, 4)])).text(),
         "bad-no-mesh": Gltf().put(nodes=[{}]).text(), "bad-mesh": Gltf().put(nodes=[{"mesh": 7}]).text(),
         "bad-restart": Gltf(TETRA._replace(faces=[(0, 1, 2, 255, 1, 2, 3)]), index="B", mode=5).text(),
         "bad-nan": Gltf(TETRA.at((math.nan, 0, 0))).text(), "bad-count": text.replace(b'"count": 4', b'"count": 400')})
-    yield from files("glb", None, {"bad-cut": good.binary()[:-1], "bad-version": good.binary(version=1), "bad-words": "glTF but not quite",
-                                   "bad-json": good.binary(b"{")})
+    yield from files("glb", None, {"bad-cut": good.binary()[:-1], "bad-version": good.binary(version=1),
+                                   "bad-words": "glTF but not quite", "bad-json": good.binary(b"{")})
 
 
 def cases():

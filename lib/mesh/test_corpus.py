@@ -26,7 +26,8 @@ MAP = ("--map", "--nodes", "60")  # is of points, too, and counts them
 
 def info(program, *words):
     """Returns exit code, standard output and messages of `shapebench info`."""
-    done = subprocess.run([program, "info", *words], capture_output=True, text=True, errors="replace", timeout=SECONDS, check=False)
+    done = subprocess.run([program, "info", *words], capture_output=True, text=True, errors="replace", timeout=SECONDS,
+                          check=False)
     return done.returncode, done.stdout, re.sub("(?m)^shapebench info: ", "", done.stderr.strip())
 
 
