@@ -311,8 +311,9 @@ def stl_bad():
         "nan": ("vertex 1", "vertex nan"), "inf": ("vertex 1", "vertex inf"), "word": ("vertex 1 0", "vertex a 0"),
         "two-corners": ("      vertex 1 0 0\n", "", 1)}, {
             "no-facets": "solid x\nendsolid x\n", "cut": good[:good.rindex("endloop")],
-            "cut-number": good[:good.rindex("vertex") + 8], "cut-binary": binary[:-1], "header": binary[:84], "short": binary[:60],
-            "many": stl_binary(TETRA, count=0x7fffffff), "one-more": stl_binary(TETRA, count=5), "nan-binary": stl_binary(TETRA.at((NAN, 0, 0)))})
+            "cut-number": good[:good.rindex("vertex") + 8], "cut-binary": binary[:-1], "header": binary[:84],
+            "short": binary[:60], "many": stl_binary(TETRA, count=0x7fffffff), "one-more": stl_binary(TETRA, count=5),
+            "nan-binary": stl_binary(TETRA.at((NAN, 0, 0)))})
 
 
 def off(body, key="OFF\n", vertex="{}", face="{}", counts="{} {} 0"):
@@ -338,9 +339,9 @@ def off_files(offset):
         "normals": off(body, "NOFF\n", "{} 0 0 1"), "nan-normals": off(body, "NOFF\n", "{} nan nan nan"),
         "texture": off(body, "STOFF\n", "{} 0.5 0.5"), "edges-below": off(body, counts="{} {}\n99"),
         "key-line": off(body, "OFF "), "all": off(body, "STCNOFF\n", "{} 0 0 1 0.1 0.2 0.3 1 0.5 0.5"),
-        "face-rgb": off(body, face="{} 255 0 0"), "face-rgba": off(body, face="{} 0.1 0.2 0.3 1"), "face-index": off(body, face="{} 3"),
-        "edges": off(body, counts="{} {} 99"), "modelnet": off(body, "OFF"), "comments": "# first\n" + commented + "# last",
-        "words": "OFF\n" + head.replace(" ", "\n") + faces})
+        "face-rgb": off(body, face="{} 255 0 0"), "face-rgba": off(body, face="{} 0.1 0.2 0.3 1"),
+        "face-index": off(body, face="{} 3"), "edges": off(body, counts="{} {} 99"), "modelnet": off(body, "OFF"),
+        "comments": "# first\n" + commented + "# last", "words": "OFF\n" + head.replace(" ", "\n") + faces})
     yield from files("off", body, {"points-lines": off(body._replace(faces=body.faces + [(0, 1), (2,)]))}, says="points.*lines")
     yield from files("off", body, {
         "no-edges": off(body, counts="{} {}"), "no-edges-key-line": off(body, "OFF ", counts="{} {}"), "no-key": off(body, ""),
