@@ -185,6 +185,7 @@ if(NOT SHAPEBENCH_SANITIZE AND NOT SHAPEBENCH_CORE)
   foreach(what brute_force damage writers scenes) # more on request: --particles, --rounds, --seconds
     add_script_test(${what} test_${what}.py $<TARGET_FILE:shapebench>)
   endforeach()
+  add_script_test(corpus ../lib/mesh/test_corpus.py $<TARGET_FILE:shapebench> $<TARGET_FILE:shapebench_shared>)
   add_script_test(by_isa by_isa.py $<TARGET_FILE:shapebench> hashes penguin hand-sampled)
   add_script_test(report report/test_report.py $<TARGET_FILE:shapebench>)
   add_script_test(python_module ../lib/python/test_shapebench.py
@@ -203,7 +204,7 @@ endif()
 set(long_150 page)
 set(long_100 scenes)
 set(long_60 brute_force documents report render writers meshless_cracked meshless_multitorus bench_burst)
-set(long_20 bench_inside damage bench_regress package python_module python_wheel lib_shape meshless_point_maps
+set(long_20 bench_inside corpus damage bench_regress package python_module python_wheel lib_shape meshless_point_maps
   meshless_cracked_cylinders)
 set(long_10 bench_calibrate bench_kernels bench_sweep_run bench_points bench_gap bench_threads bench_command
   bench_experiment bench_comparison bench_stiffness bench_step_record bench_view bench_octree_states
