@@ -111,6 +111,7 @@ else()
 endif()
 
 string(APPEND sources_left_out |references_absent|elastic_absent|dense_plain)
+string(APPEND sources_of_files |other_absent)
 if(has_assimp)
   string(APPEND sources_left_out |other_absent)
   list(APPEND pc_needs ${ASSIMP_LDFLAGS})

@@ -68,7 +68,7 @@ stand_in apt-get
 rm "$folder/bin/sudo"
 said=$(answer run)
 ! grep -q sudo <<<"$said" || fail "sudo is named where there is none: $said"
-grep -q '^    apt-get install .* libassimp-dev' <<<"$said" || fail "no line to type: $said"
+grep -q '^    apt-get install .* libhdf5-dev' <<<"$said" || fail "no line to type: $said"
 stand_in sudo 'exit 1'
 answer run | grep -q '^    sudo apt-get install ' || fail "sudo is not named"
 
