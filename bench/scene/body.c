@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "../../lib/box.h"
 #include "../../lib/mesh/import.h"
@@ -32,31 +31,25 @@ SmCode bench_mesh_load(const char *mesh, SmMesh *result, SmError *error)
     return import(mesh, result, error);
 }
 
-/* Whether the header of a PLY file says that it has faces. */
-static bool has_faces(const char *path)
-{
-    char line[256];
-    long faces = 0;
-    FILE *file = sm_file_open(path, NULL, NULL);
-    while (file && !faces && fgets(line, sizeof line, file) && strncmp(line, "end_header", 10) != 0)
-        sscanf(line, "element face %ld", &faces);
-    if (file) fclose(file);
-    return faces > 0;
-}
-
-/* Whether a file is of points: text, or a PLY file without faces that is no mesh. Else its mesh is
- * read. */
+/* Whether a file is of points: text, or one of points alone that is no mesh. Else its mesh is read.
+ */
 static bool has_points(const char *path, SmMesh *mesh, SmCode *code, SmError *error)
 {
-    const char *dot = strrchr(path, '.');
-    bool bare = dot && !strcasecmp(dot, ".ply") && !has_faces(path);
+    SmError why;
+    long count;
+    double(*position)[3], (*normal)[3];
     *mesh = (SmMesh){0};
     *code = SM_OK;
     if (ref_points_text(path)) return true;
-    *code = bench_mesh_load(path, mesh, bare ? NULL : error);
-    if (*code == SM_OK || !bare) return false;
+    *code = bench_mesh_load(path, mesh, &why);
+    if (*code == SM_OK) return false;
     *mesh = (SmMesh){0};
-    return true;
+    if (!sm_import_points(path, &count, &position, &normal, NULL)) {
+        sm_free_all(position, normal);
+        return true;
+    }
+    if (error) *error = why;
+    return false;
 }
 
 SmCode bench_points_or_mesh(const char *path, RefPoints *points, SmMesh *mesh, SmError *error)

@@ -25,9 +25,9 @@ typedef struct BenchBody {
 /* Reads a mesh: "shape:NAME" or a mesh file. A remark says what the file has that is left out. */
 SmCode bench_mesh_load(const char *mesh, SmMesh *result, SmError *error);
 
-/* Reads points from text (x y z nx ny nz) or a PLY file without faces, into `points`; from anything
- * else a mesh, as bench_mesh_load(), into `mesh`. The other one is zeroed, so that both can be
- * freed. Errors: those of reading either. */
+/* Reads points from text (x y z nx ny nz) or a mesh file without faces, into `points`; from
+ * anything else a mesh, as bench_mesh_load(), into `mesh`. The other one is zeroed, so that both
+ * can be freed. Errors: those of reading either. */
 SmCode bench_points_or_mesh(const char *path, RefPoints *points, SmMesh *mesh, SmError *error);
 
 /* Reads a shell's mesh: as bench_mesh_load(), or of such a file of points, with normals or

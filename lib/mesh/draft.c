@@ -8,7 +8,7 @@
 
 static const double most_cut = 1e9; /* squares of polygons' corners: seconds of cutting */
 
-static long place_of(const SmDraft *draft)
+static long place_of_draft(const SmDraft *draft)
 {
     return draft->line ? draft->line : (long)(draft->at - draft->begin);
 }
@@ -21,7 +21,8 @@ bool sm_draft_fail(SmDraft *draft, const char *format, ...)
     sm_write_line(text, sizeof text, format, arguments);
     va_end(arguments);
     if (draft->at)
-        snprintf(place, sizeof place, "%s %ld: ", draft->line ? "line" : "byte", place_of(draft));
+        snprintf(place, sizeof place, "%s %ld: ", draft->line ? "line" : "byte",
+                 place_of_draft(draft));
     sm_fail(draft->error, SM_INPUT, "%s: %s%s", draft->file->name, place, text);
     return false;
 }
@@ -73,7 +74,7 @@ bool sm_draft_corner(SmDraft *draft, double vertex)
     draft->corner[draft->corners++] = (int)vertex;
     if ((long)vertex > draft->largest) {
         draft->largest = (long)vertex;
-        draft->largest_at = place_of(draft);
+        draft->largest_at = place_of_draft(draft);
     }
     return true;
 }

@@ -8,7 +8,7 @@
 #include "../system/file.h"
 
 /* Reads all of a file. False: `error`, if not NULL, says why. The caller frees. */
-static bool read_file(const char *path, unsigned char **bytes, size_t *size, SmError *error)
+static bool read_whole_file(const char *path, unsigned char **bytes, size_t *size, SmError *error)
 {
     double length = 0;
     FILE *file = sm_file_open(path, &length, error);
@@ -18,7 +18,7 @@ static bool read_file(const char *path, unsigned char **bytes, size_t *size, SmE
     bool good = *bytes && fread(*bytes, 1, *size, file) == *size;
     fclose(file);
     if (good) return true;
-    sm_fail(error, *bytes ? SM_INPUT : SM_MEMORY, "%s: %s", path,
+    sm_fail(error, SM_INPUT, "%s: %s", path,
             *bytes ? "cannot be read to its end" : "there is no memory for it");
     free(*bytes);
     *bytes = NULL;
@@ -27,7 +27,7 @@ static bool read_file(const char *path, unsigned char **bytes, size_t *size, SmE
 
 /* An SmMeshBeside of the mesh's path. Links are followed before the folder is compared. WebAssembly
  * has no files. */
-static bool read_beside(void *of, const char *name, unsigned char **bytes, size_t *size)
+static bool read_file_beside(void *of, const char *name, unsigned char **bytes, size_t *size)
 {
     const char *path = of, *slash = strrchr(path, '/');
     size_t length = slash ? (size_t)(slash - path) + 1 : 0;
@@ -39,15 +39,15 @@ static bool read_beside(void *of, const char *name, unsigned char **bytes, size_
     size_t depth = folder ? strlen(folder) : 0;
     bool beneath =
         resolved && !strncmp(resolved, folder, depth) && (resolved[depth] == '/' || depth == 1);
-    bool good = beneath && read_file(resolved, bytes, size, NULL);
+    bool good = beneath && read_whole_file(resolved, bytes, size, NULL);
     sm_free_all(joined, folder, resolved);
     return good;
 }
 
 static bool open_mesh(const char *path, SmMeshFile *file, unsigned char **bytes, SmError *error)
 {
-    *file = (SmMeshFile){.name = path, .beside = read_beside, .of = (void *)path};
-    bool good = read_file(path, bytes, &file->size, error);
+    *file = (SmMeshFile){.name = path, .beside = read_file_beside, .of = (void *)path};
+    bool good = read_whole_file(path, bytes, &file->size, error);
     file->bytes = *bytes;
     return good;
 }

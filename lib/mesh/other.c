@@ -30,7 +30,7 @@ typedef struct {
     double vertices, faces; /* so far */
 } Import;
 
-static Transform compose(const Transform *outer, const struct aiMatrix4x4 *m)
+static Transform compose_transforms(const Transform *outer, const struct aiMatrix4x4 *m)
 {
     const ai_real inner[4][4] = {{m->a1, m->a2, m->a3, m->a4},
                                  {m->b1, m->b2, m->b3, m->b4},
@@ -71,9 +71,9 @@ static void write_faces(const Import *import, const struct aiMesh *mesh, const T
     }
 }
 
-static void walk(Import *import, const struct aiNode *node, const Transform *outer)
+static void walk_nodes(Import *import, const struct aiNode *node, const Transform *outer)
 {
-    Transform transform = compose(outer, &node->mTransformation);
+    Transform transform = compose_transforms(outer, &node->mTransformation);
     for (unsigned m = 0; m < node->mNumMeshes; m++) {
         const struct aiMesh *mesh = import->scene->mMeshes[node->mMeshes[m]];
         if (import->reply && import->of_faces) write_faces(import, mesh, &transform);
@@ -81,15 +81,16 @@ static void walk(Import *import, const struct aiNode *node, const Transform *out
         import->vertices += mesh->mNumVertices;
         import->faces += mesh->mNumFaces;
     }
-    for (unsigned c = 0; c < node->mNumChildren; c++) walk(import, node->mChildren[c], &transform);
+    for (unsigned c = 0; c < node->mNumChildren; c++)
+        walk_nodes(import, node->mChildren[c], &transform);
 }
 
 /* A small file that uses its parts again and again would take minutes and all memory. */
-static void write_scene(Import *import, FILE *reply)
+static void write_ply(Import *import, FILE *reply)
 {
     static const Transform identity = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
     double most = 2e6 + (double)import->file->size;
-    walk(import, import->scene->mRootNode, &identity);
+    walk_nodes(import, import->scene->mRootNode, &identity);
     if (import->faces > most || import->vertices > 3 * most) {
         fprintf(reply,
                 "%cit uses its parts so often that they make more than %.2g million triangles, "
@@ -107,7 +108,7 @@ static void write_scene(Import *import, FILE *reply)
     for (int pass = 0; pass < 2; pass++) {
         import->of_faces = pass == 1;
         import->vertices = 0;
-        walk(import, import->scene->mRootNode, &identity);
+        walk_nodes(import, import->scene->mRootNode, &identity);
     }
 }
 
@@ -124,7 +125,7 @@ static int import_bytes(void *argument, int descriptor)
         (const char *)import.file->bytes, (unsigned)import.file->size, 0, suffix, properties);
     if (!reply || strstr(aiGetErrorString(), "bad_alloc")) return SM_CHILD_NO_MEMORY;
     if (import.scene && import.scene->mRootNode)
-        write_scene(&import, reply);
+        write_ply(&import, reply);
     else
         fprintf(reply, "%c%.300s", REFUSED, aiGetErrorString());
     return fclose(reply) != 0;

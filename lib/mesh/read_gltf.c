@@ -36,7 +36,7 @@ static const Transform identity = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
 /* ---- JSON */
 
 /* Calls json_unpack(), whose format says what the object must have and what it may have. */
-static bool unpack(Gltf *gltf, json_t *object, const char *format, ...)
+static bool unpack_json(Gltf *gltf, json_t *object, const char *format, ...)
 {
     json_error_t why;
     va_list arguments;
@@ -63,7 +63,7 @@ static bool check_version(Gltf *gltf)
         "EXT_texture_",          "MSFT_texture_dds",        "KHR_lights_punctual"};
     const json_t *required = json_object_get(gltf->root, "extensionsRequired");
     const char *version;
-    if (!unpack(gltf, gltf->root, "{s:{s:s}}", "asset", "version", &version)) return false;
+    if (!unpack_json(gltf, gltf->root, "{s:{s:s}}", "asset", "version", &version)) return false;
     if (version[0] != '2') return FAIL("glTF %.20s is not read; export it as glTF 2.0", version);
     for (size_t i = 0; i < json_array_size(required); i++) {
         const char *name = json_string_value(json_array_get(required, i));
@@ -106,7 +106,7 @@ static void decode_name(const char *uri, char *name)
     *name = 0;
 }
 
-static bool read_beside(Gltf *gltf, const char *uri, Buffer *buffer)
+static bool read_gltf_file(Gltf *gltf, const char *uri, Buffer *buffer)
 {
     const SmMeshFile *file = gltf->draft->file;
     char *name = sm_alloc(strlen(uri) + 1, 1);
@@ -120,20 +120,20 @@ static bool read_beside(Gltf *gltf, const char *uri, Buffer *buffer)
     return bytes != NULL;
 }
 
-static bool read_buffer(Gltf *gltf, size_t index)
+static bool read_gltf_buffer(Gltf *gltf, size_t index)
 {
     Buffer *buffer = &gltf->buffer[index];
     json_t *json = get_item(gltf, "buffers", (double)index);
     const char *uri = NULL;
     double length;
-    if (!json || !unpack(gltf, json, "{s:F, s?s}", "byteLength", &length, "uri", &uri))
+    if (!json || !unpack_json(gltf, json, "{s:F, s?s}", "byteLength", &length, "uri", &uri))
         return false;
     if (!uri && index == 0) *buffer = gltf->chunk;
     if (!uri && !buffer->bytes) return true; /* an extension's; refused where it is used */
     const char *data = uri && !strncmp(uri, "data:", 5) ? strstr(uri, ";base64,") : NULL;
     if (data && !decode_base64(data + 8, buffer))
         return FAIL("buffers[%zu] is not base64" SM_AGAIN, index);
-    if (uri && !data && !read_beside(gltf, uri, buffer)) return false;
+    if (uri && !data && !read_gltf_file(gltf, uri, buffer)) return false;
     if (buffer->owned) buffer->bytes = buffer->owned;
     gltf->most += buffer->owned ? (double)buffer->size : 0;
     if (length <= (double)buffer->size) return true;
@@ -146,7 +146,7 @@ static bool read_buffers(Gltf *gltf)
     gltf->buffer = sm_alloc(gltf->buffers, sizeof *gltf->buffer);
     gltf->most = 2e6 + (double)(gltf->draft->end - gltf->draft->begin);
     for (size_t b = 0; b < gltf->buffers; b++)
-        if (!read_buffer(gltf, b)) return false;
+        if (!read_gltf_buffer(gltf, b)) return false;
     return true;
 }
 
@@ -176,8 +176,8 @@ static bool find_elements(Gltf *gltf, double view, double offset, double count, 
     double index, length, start = 0;
     json_t *json = get_item(gltf, "bufferViews", view);
     elements->stride = size;
-    if (!json || !unpack(gltf, json, "{s:F, s:F, s?F, s?F}", "buffer", &index, "byteLength",
-                         &length, "byteOffset", &start, "byteStride", &elements->stride))
+    if (!json || !unpack_json(gltf, json, "{s:F, s:F, s?F, s?F}", "buffer", &index, "byteLength",
+                              &length, "byteOffset", &start, "byteStride", &elements->stride))
         return false;
     bool inside = index >= 0 && index < (double)gltf->buffers;
     const Buffer *buffer = inside ? &gltf->buffer[(size_t)index] : NULL;
@@ -206,9 +206,9 @@ static bool apply_sparse(Gltf *gltf, json_t *sparse, Elements *values, double co
 {
     double changed, type, view[2], offset[2] = {0};
     Elements indices = {.parts = 1};
-    if (!unpack(gltf, sparse, "{s:F, s:{s:F, s:F, s?F}, s:{s:F, s?F}}", "count", &changed,
-                "indices", "bufferView", &view[0], "componentType", &type, "byteOffset", &offset[0],
-                "values", "bufferView", &view[1], "byteOffset", &offset[1]) ||
+    if (!unpack_json(gltf, sparse, "{s:F, s:{s:F, s:F, s?F}, s:{s:F, s?F}}", "count", &changed,
+                     "indices", "bufferView", &view[0], "componentType", &type, "byteOffset",
+                     &offset[0], "values", "bufferView", &view[1], "byteOffset", &offset[1]) ||
         !set_type(gltf, type, &indices) ||
         !find_elements(gltf, view[0], offset[0], changed, &indices) ||
         !find_elements(gltf, view[1], offset[1], changed, values))
@@ -232,11 +232,11 @@ static double *read_accessor(Gltf *gltf, json_t *object, const char *key, const 
     const char *is;
     json_t *accessor, *sparse = NULL;
     int normalized = 0;
-    if (!unpack(gltf, object, "{s:F}", key, &index) ||
+    if (!unpack_json(gltf, object, "{s:F}", key, &index) ||
         !(accessor = get_item(gltf, "accessors", index)) ||
-        !unpack(gltf, accessor, "{s:F, s:F, s:s, s?F, s?F, s?b, s?o}", "componentType", &type,
-                "count", &number, "type", &is, "bufferView", &view, "byteOffset", &offset,
-                "normalized", &normalized, "sparse", &sparse))
+        !unpack_json(gltf, accessor, "{s:F, s:F, s:s, s?F, s?F, s?b, s?o}", "componentType", &type,
+                     "count", &number, "type", &is, "bufferView", &view, "byteOffset", &offset,
+                     "normalized", &normalized, "sparse", &sparse))
         return NULL;
     Elements elements = {.parts = kind[0] == 'S' ? 1 : (size_t)(kind[3] - '0')};
     elements.normalized = normalized;
@@ -257,7 +257,7 @@ static double *read_accessor(Gltf *gltf, json_t *object, const char *key, const 
 
 /* ---- transforms */
 
-static Transform compose(const Transform *outer, const Transform *inner)
+static Transform compose_nodes(const Transform *outer, const Transform *inner)
 {
     Transform result = {0};
     for (int i = 0; i < 3; i++)
@@ -289,11 +289,11 @@ static bool get_transform(Gltf *gltf, json_t *node, Transform *transform)
     double m[3] = {0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
     double(*r)[4] = transform->row, zero, one;
     if (json_object_get(node, "matrix"))
-        return unpack(gltf, node, "{s:[FFFFFFFFFFFFFFFF]}", "matrix", &r[0][0], &r[1][0], &r[2][0],
-                      &zero, &r[0][1], &r[1][1], &r[2][1], &zero, &r[0][2], &r[1][2], &r[2][2],
-                      &zero, &r[0][3], &r[1][3], &r[2][3], &one);
-    if (!unpack(gltf, node, "{s?[FFF], s?[FFFF], s?[FFF]}", "translation", &m[0], &m[1], &m[2],
-                "rotation", &q[0], &q[1], &q[2], &q[3], "scale", &s[0], &s[1], &s[2]))
+        return unpack_json(gltf, node, "{s:[FFFFFFFFFFFFFFFF]}", "matrix", &r[0][0], &r[1][0],
+                           &r[2][0], &zero, &r[0][1], &r[1][1], &r[2][1], &zero, &r[0][2], &r[1][2],
+                           &r[2][2], &zero, &r[0][3], &r[1][3], &r[2][3], &one);
+    if (!unpack_json(gltf, node, "{s?[FFF], s?[FFFF], s?[FFF]}", "translation", &m[0], &m[1], &m[2],
+                     "rotation", &q[0], &q[1], &q[2], &q[3], "scale", &s[0], &s[1], &s[2]))
         return false;
     *transform = transform_of(m, q, s);
     return true;
@@ -313,7 +313,8 @@ static bool check_number(Gltf *gltf, double vertices, double triangles)
                 gltf->most / 1e6);
 }
 
-static bool add_vertices(Gltf *gltf, const Transform *transform, const double *position, long count)
+static bool add_gltf_vertices(Gltf *gltf, const Transform *transform, const double *position,
+                              long count)
 {
     if (!check_number(gltf, (double)count, 0)) return false;
     for (long v = 0; v < count; v++) {
@@ -326,7 +327,7 @@ static bool add_vertices(Gltf *gltf, const Transform *transform, const double *p
 }
 
 /* Adds triangles of `count` corners: vertices that are added next, in turn or by their `index`. */
-static bool add_triangles(Gltf *gltf, int mode, bool mirrored, const double *index, long count)
+static bool add_gltf_triangles(Gltf *gltf, int mode, bool mirrored, const double *index, long count)
 {
     SmDraft *draft = gltf->draft;
     double first = (double)draft->mesh.vertex_count;
@@ -345,13 +346,13 @@ static bool add_triangles(Gltf *gltf, int mode, bool mirrored, const double *ind
 }
 
 /* Adds a primitive's vertices and triangles; of points wanted, its points. */
-static bool add_primitive(Gltf *gltf, json_t *primitive, const Transform *transform)
+static bool add_gltf_primitive(Gltf *gltf, json_t *primitive, const Transform *transform)
 {
     SmDraft *draft = gltf->draft;
     int mode = TRIANGLES;
     json_t *attributes, *indices = NULL, *extensions = NULL;
-    if (!unpack(gltf, primitive, "{s:o, s?i, s?o, s?o}", "attributes", &attributes, "mode", &mode,
-                "indices", &indices, "extensions", &extensions))
+    if (!unpack_json(gltf, primitive, "{s:o, s?i, s?o, s?o}", "attributes", &attributes, "mode",
+                     &mode, "indices", &indices, "extensions", &extensions))
         return false;
     const char *name = json_object_iter_key(json_object_iter(extensions));
     if (name && strstr(name, "compression"))
@@ -368,12 +369,12 @@ static bool add_primitive(Gltf *gltf, json_t *primitive, const Transform *transf
     if (good && mode != POINTS && !solid)
         draft->left_out.lines += mode == LINES ? corners / 2 : corners - (mode == LINE_STRIP);
     if (good && solid && !draft->of_points)
-        good = add_triangles(gltf, mode, mirrored, index, corners) &&
+        good = add_gltf_triangles(gltf, mode, mirrored, index, corners) &&
                (draft->largest < known + vertices ||
                 FAIL("a triangle names vertex %ld of %ld (counted from 0)" SM_AGAIN,
                      draft->largest - known, vertices));
     if (good && (draft->of_points ? mode == POINTS : solid))
-        good = add_vertices(gltf, transform, position, vertices);
+        good = add_gltf_vertices(gltf, transform, position, vertices);
     sm_free_all(position, index);
     return good;
 }
@@ -387,7 +388,7 @@ static bool add_mesh(Gltf *gltf, json_t *mesh, const Transform *transform)
             return FAIL("it uses morph targets, which are not read; apply "
                         "them before exporting");
     for (size_t p = 0; p < json_array_size(list); p++)
-        if (!add_primitive(gltf, json_array_get(list, p), transform)) return false;
+        if (!add_gltf_primitive(gltf, json_array_get(list, p), transform)) return false;
     return true;
 }
 
@@ -410,7 +411,8 @@ static bool add_instances(Gltf *gltf, json_t *mesh, json_t *attributes, const Tr
     for (long i = 0; i < count && good; i++) {
         const double *of[3];
         for (int k = 0; k < 3; k++) of[k] = value[k] ? value[k] + (k == 1 ? 4 : 3) * i : absent[k];
-        Transform inner = transform_of(of[0], of[1], of[2]), whole = compose(transform, &inner);
+        Transform inner = transform_of(of[0], of[1], of[2]),
+                  whole = compose_nodes(transform, &inner);
         good = add_mesh(gltf, mesh, &whole);
     }
     sm_free_all(value[0], value[1], value[2]);
@@ -419,7 +421,7 @@ static bool add_instances(Gltf *gltf, json_t *mesh, json_t *attributes, const Tr
 
 /* Adds the nodes of a list and those within them. The transform of a skinned mesh's node does not
  * count (glTF 2.0, 3.7.3.3). */
-static bool add_nodes(Gltf *gltf, const json_t *list, const Transform *outer, int depth)
+static bool add_gltf_nodes(Gltf *gltf, const json_t *list, const Transform *outer, int depth)
 {
     for (size_t n = 0; n < json_array_size(list); n++) {
         json_t *node = get_item(gltf, "nodes", json_number_value(json_array_get(list, n)));
@@ -427,32 +429,32 @@ static bool add_nodes(Gltf *gltf, const json_t *list, const Transform *outer, in
         Transform own;
         double index = -1;
         if (!node || !get_transform(gltf, node, &own) ||
-            !unpack(gltf, node, "{s?F, s?o, s?o, s?{s?{s:o}}}", "mesh", &index, "children",
-                    &children, "skin", &skin, "extensions", "EXT_mesh_gpu_instancing", "attributes",
-                    &instances))
+            !unpack_json(gltf, node, "{s?F, s?o, s?o, s?{s?{s:o}}}", "mesh", &index, "children",
+                         &children, "skin", &skin, "extensions", "EXT_mesh_gpu_instancing",
+                         "attributes", &instances))
             return false;
         if (depth == DEEPEST || json_object_get(node, " "))
             return FAIL("a node is in two others, or in more than %d" SM_AGAIN, DEEPEST);
         json_object_set_new(node, " ", json_true()); /* it was here */
-        Transform whole = compose(outer, &own);
+        Transform whole = compose_nodes(outer, &own);
         if (index >= 0 && !(mesh = get_item(gltf, "meshes", index))) return false;
         if (mesh && !(instances ? add_instances(gltf, mesh, instances, &whole)
                                 : add_mesh(gltf, mesh, skin ? &identity : &whole)))
             return false;
-        if (!add_nodes(gltf, children, &whole, depth + 1)) return false;
+        if (!add_gltf_nodes(gltf, children, &whole, depth + 1)) return false;
     }
     return true;
 }
 
-static bool add_scene(Gltf *gltf)
+static bool add_gltf_scene(Gltf *gltf)
 {
     double number = 0;
     size_t count = json_array_size(json_object_get(gltf->root, "scenes"));
-    if (!unpack(gltf, gltf->root, "{s?F}", "scene", &number)) return false;
+    if (!unpack_json(gltf, gltf->root, "{s?F}", "scene", &number)) return false;
     if (!count) return FAIL("it has no scene; export it with one");
     gltf->draft->left_out.scenes = (long)count - 1;
     const json_t *scene = get_item(gltf, "scenes", number);
-    return scene && add_nodes(gltf, json_object_get(scene, "nodes"), &identity, 0);
+    return scene && add_gltf_nodes(gltf, json_object_get(scene, "nodes"), &identity, 0);
 }
 
 /* ---- the file */
@@ -502,7 +504,7 @@ bool sm_read_gltf(SmDraft *draft)
     bool good = split_chunks(&gltf, &text);
     draft->at = NULL;
     good = good && load_json(&gltf, &text) && check_version(&gltf) && read_buffers(&gltf) &&
-           add_scene(&gltf);
+           add_gltf_scene(&gltf);
     for (size_t b = 0; gltf.buffer && b < gltf.buffers; b++) free(gltf.buffer[b].owned);
     free(gltf.buffer);
     json_decref(gltf.root);

@@ -20,7 +20,7 @@ static bool read_corner(SmDraft *draft)
     return sm_draft_corner(draft, (double)(negative ? known - vertex : vertex - 1));
 }
 
-static bool read_face(SmDraft *draft)
+static bool read_obj_face(SmDraft *draft)
 {
     while (sm_draft_word(draft))
         if (!read_corner(draft)) return false;
@@ -29,7 +29,7 @@ static bool read_face(SmDraft *draft)
     return sm_draft_face(draft);
 }
 
-static bool read_vertex(SmDraft *draft)
+static bool read_obj_vertex(SmDraft *draft)
 {
     double position[3];
     for (int d = 0; d < 3; d++) {
@@ -43,9 +43,9 @@ static bool read_vertex(SmDraft *draft)
 static bool read_statement(SmDraft *draft)
 {
     SmMeshLeftOut *left_out = &draft->left_out;
-    if (sm_draft_take(draft, "v", false)) return read_vertex(draft);
+    if (sm_draft_take(draft, "v", false)) return read_obj_vertex(draft);
     if (sm_draft_take(draft, "f", false) || sm_draft_take(draft, "fo", false))
-        return read_face(draft);
+        return read_obj_face(draft);
     if (sm_draft_take(draft, "l", false)) left_out->lines++;
     if (sm_draft_take(draft, "p", false))
         for (; sm_draft_word(draft); sm_draft_skip(draft, 1)) left_out->points++;

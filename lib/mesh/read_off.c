@@ -59,7 +59,7 @@ static bool read_counts(SmDraft *draft, int size, long *vertices, long *faces)
     return true;
 }
 
-static bool read_vertex(SmDraft *draft, const Kind *kind, int size)
+static bool read_off_vertex(SmDraft *draft, const Kind *kind, int size)
 {
     double number[6] = {0};
     int count = kind->normal ? 6 : 3;
@@ -73,7 +73,7 @@ static bool read_vertex(SmDraft *draft, const Kind *kind, int size)
     return sm_draft_vertex(draft, number, number + 3);
 }
 
-static bool read_face(SmDraft *draft)
+static bool read_off_face(SmDraft *draft)
 {
     long count, colours = 0;
     double vertex;
@@ -101,9 +101,9 @@ bool sm_read_off(SmDraft *draft)
     if (!read_counts(draft, size, &vertices, &faces)) return false;
     sm_draft_reserve(draft, vertices, faces);
     for (long v = 0; v < vertices; v++)
-        if (!read_vertex(draft, &kind, size)) return false;
+        if (!read_off_vertex(draft, &kind, size)) return false;
     for (long f = 0; f < faces; f++)
-        if (!read_face(draft)) return false;
+        if (!read_off_face(draft)) return false;
     return kind.binary || !sm_draft_find(draft) ||
            sm_draft_fail(draft, "there is more data than the counts say" SM_AGAIN);
 }

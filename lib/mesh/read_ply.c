@@ -135,7 +135,7 @@ static void begin_binary(SmDraft *draft)
 /* ---- body */
 
 /* -1, which ends a strip, is no corner. Every other triangle of a strip is turned round. */
-static bool add_strip(SmDraft *draft, double vertex, long *length, double last[2])
+static bool add_ply_strip(SmDraft *draft, double vertex, long *length, double last[2])
 {
     bool odd = ++*length % 2 == 0;
     if (vertex == -1) *length = 0;
@@ -147,7 +147,7 @@ static bool add_strip(SmDraft *draft, double vertex, long *length, double last[2
     return true;
 }
 
-static bool read_list(Ply *ply, const Element *element, const Property *property)
+static bool read_ply_list(Ply *ply, const Element *element, const Property *property)
 {
     SmDraft *draft = ply->draft;
     long count, length = 0;
@@ -158,18 +158,18 @@ static bool read_list(Ply *ply, const Element *element, const Property *property
     for (long i = 0; i < count; i++)
         if (!sm_draft_numbers(draft, property->type, 1, &vertex) ||
             (used && !(element->kind == FACES ? sm_draft_corner(draft, vertex)
-                                              : add_strip(draft, vertex, &length, last))))
+                                              : add_ply_strip(draft, vertex, &length, last))))
             return false;
     return !used || element->kind == STRIPS || sm_draft_face(draft);
 }
 
-static bool read_row(Ply *ply, const Element *element)
+static bool read_ply_row(Ply *ply, const Element *element)
 {
     double number[NUMBERS] = {0}, other;
     for (int p = element->first; p < element->first + element->properties; p++) {
         const Property *property = &ply->property[p];
         double *value = property->use == NO_USE || property->list ? &other : &number[property->use];
-        if (property->list ? !read_list(ply, element, property)
+        if (property->list ? !read_ply_list(ply, element, property)
                            : !sm_draft_numbers(ply->draft, property->type, 1, value))
             return false;
     }
@@ -201,7 +201,7 @@ static bool check_element(Ply *ply, const Element *element)
     return true;
 }
 
-static bool read_body(Ply *ply)
+static bool read_ply_body(Ply *ply)
 {
     SmDraft *draft = ply->draft;
     if (ply->ascii)
@@ -214,7 +214,7 @@ static bool read_body(Ply *ply)
         sm_draft_reserve(draft, element->kind == VERTICES ? element->count : 0,
                          element->kind == FACES ? element->count : 0);
         for (long i = 0; i < element->count && element->properties; i++)
-            if (!read_row(ply, element)) return false;
+            if (!read_ply_row(ply, element)) return false;
     }
     return !ply->ascii || !sm_draft_find(draft) ||
            sm_draft_fail(draft, "there is more data than the header says" SM_AGAIN);
@@ -224,7 +224,7 @@ bool sm_read_ply(SmDraft *draft)
 {
     Ply *ply = sm_alloc(1, sizeof *ply);
     ply->draft = draft;
-    bool good = read_header(ply) && read_body(ply);
+    bool good = read_header(ply) && read_ply_body(ply);
     free(ply);
     return good;
 }

@@ -54,7 +54,7 @@ typedef struct {
     bool solid, facet;
 } Open;
 
-static bool read_vertex(SmDraft *draft, const Open *open)
+static bool read_stl_vertex(SmDraft *draft, const Open *open)
 {
     double position[3];
     if (!open->facet || draft->corners == 3)
@@ -78,7 +78,7 @@ static bool skip_word(SmDraft *draft)
 
 static bool read_word(SmDraft *draft, Open *open)
 {
-    if (sm_draft_take(draft, "vertex", true)) return read_vertex(draft, open);
+    if (sm_draft_take(draft, "vertex", true)) return read_stl_vertex(draft, open);
     if (sm_draft_take(draft, "endfacet", true)) {
         if (draft->corners != 3)
             return sm_draft_fail(draft, "a facet of %ld vertices" SM_AGAIN, draft->corners);
@@ -95,7 +95,7 @@ static bool read_word(SmDraft *draft, Open *open)
     return true;
 }
 
-static bool read_text(SmDraft *draft)
+static bool read_stl_text(SmDraft *draft)
 {
     Open open = {false, false};
     while (sm_draft_find(draft))
@@ -111,7 +111,7 @@ bool sm_read_stl(SmDraft *draft)
     const char *end = draft->end;
     sm_draft_trim(draft);
     size_t size = (size_t)(draft->end - draft->begin);
-    if (!memchr(draft->begin, 0, size < 1024 ? size : 1024)) return read_text(draft);
+    if (!memchr(draft->begin, 0, size < 1024 ? size : 1024)) return read_stl_text(draft);
     draft->end = end;
     return read_binary(draft);
 }
