@@ -96,7 +96,7 @@ store() {
 
 # read_files RELEASE FOLDER: reads stored files in every way; regress returns 7 where other programs disturbed the times.
 read_files() {
-    line "$1" "stored files" "scripts/run report $2/x.h5 $2/sweep.h5 -o $2/report.html"
+    line "$1" "stored files" "scripts/run report $2/x.h5 $2/sweep.h5 -o $2.html"
     line "$1" "stored files" "scripts/run regress $2/x.h5 $2/x.h5 || [ \$? -eq 7 ]"
     line "$1" "stored files" "scripts/run sweep $2/sweep.h5"
     line "$1" "stored files" "PYTHONPATH=lib/python python3 -c 'import shapebench.results as r
