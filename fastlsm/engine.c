@@ -394,7 +394,6 @@ static void begin_momentum(SmEngine *e)
 static void keep_momentum(SmEngine *e)
 {
     real *x = field_of(e, SM_POSITION), *v = field_of(e, SM_VELOCITY);
-    momentum_settle(e->momentum, 0, NULL, x, v, e->lsm->gravity);
     if (!momentum_due(e->momentum)) return;
     if (e->lsm->broken != e->divided_at)
         divide_momentum(e);
@@ -472,6 +471,8 @@ static void engine_step(SmEngine *e, SmLaps *laps)
         sm_lap(laps, SM_OTHER);
     }
     lsm_step(lsm, laps);
+    momentum_settle(e->momentum, 0, NULL, field_of(e, SM_POSITION), field_of(e, SM_VELOCITY),
+                    lsm->gravity); /* before others change what obstacles have pushed */
     move_held(e);
     if (e->contacts) lsm_contacts_after(e->contacts, e->momentum);
     if (lsm->params.strain_limit > 0 && isfinite(lsm->params.strain_limit)) lsm_fracture(lsm);

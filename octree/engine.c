@@ -427,14 +427,20 @@ static void begin_momentum(SmEngine *e)
     e->oct->rounding = rests ? e->oct->at_rest : 0;
 }
 
+/* Before others change what obstacles have pushed. */
+static void settle_momentum(SmEngine *e)
+{
+    const Oct *oct = e->oct;
+    for (const OctState *b = oct->body; e->divided && b < oct->body + oct->instances; b++)
+        momentum_settle(e->momentum, b - oct->body, (const double(*)[3])b->origin, b->x, b->v,
+                        oct->gravity);
+}
+
 /* After the first step of a body that has changed its pieces are found again. */
 static void keep_momentum(SmEngine *e)
 {
     Oct *oct = e->oct;
     bool keeps = oct->params.weighting == OCT_CONSERVING;
-    for (OctState *b = oct->body; e->divided && b < oct->body + oct->instances; b++)
-        momentum_settle(e->momentum, b - oct->body, (const double(*)[3])b->origin, b->x, b->v,
-                        oct->gravity);
     if (!momentum_due(e->momentum)) return;
     if (!keeps) momentum_forget(e->momentum);
     for (long i = 0; i < oct->instances && e->divided && keeps; i++) {
@@ -455,6 +461,7 @@ static void engine_step(SmEngine *e, SmLaps *laps)
         sm_lap(laps, SM_OTHER);
     }
     oct_step(e->oct, laps);
+    settle_momentum(e);
     oct_handle_nodes_move(&e->handle_nodes, e->oct, &e->base.structure,
                           (const double(*)[3][4])e->pose, divided(e));
     if (e->contacts) oct_contacts_after(e->contacts, divided(e));

@@ -510,6 +510,15 @@ static void leave(const BenchRunner *runner, const SmEngineParams *params,
     copy_free(&copy);
 }
 
+/* What is left of a vector without its parts along so many orthonormal ones. */
+static void leave_out(int rank, double basis[3][3], double vector[3])
+{
+    for (int b = 0; b < rank; b++) {
+        double part = sm_dot(vector, basis[b]);
+        for (int d = 0; d < 3; d++) vector[d] -= part * basis[b][d];
+    }
+}
+
 /* The scene's planes, without friction, and an orthonormal basis of their normals; its rank. */
 static int find_planes(const BenchScene *scene, SmBoundary *planes, SmObstacle *plane,
                        double basis[3][3])
@@ -523,10 +532,7 @@ static int find_planes(const BenchScene *scene, SmBoundary *planes, SmObstacle *
         o->friction = 0;
         double rest[3];
         memcpy(rest, o->b, sizeof rest);
-        for (int b = 0; b < rank; b++) {
-            double part = sm_dot(rest, basis[b]);
-            for (int d = 0; d < 3; d++) rest[d] -= part * basis[b][d];
-        }
+        leave_out(rank, basis, rest);
         double size = sqrt(sm_dot(rest, rest));
         if (rank == 3 || !(size > 1e-6)) continue;
         for (int d = 0; d < 3; d++) basis[rank][d] = rest[d] / size;
@@ -535,26 +541,27 @@ static int find_planes(const BenchScene *scene, SmBoundary *planes, SmObstacle *
     return rank;
 }
 
-/* What it drifts along the planes on which it falls; 0: they leave no direction free. */
+/* What it drifts along the planes on which it falls; 0: they leave no direction free, or it slides
+ * down them. */
 static double held_drift(const BenchRunner *runner, SmEngineParams *params, long steps,
                          const double *mass, Momenta *before, Momenta *after)
 {
     const BenchScene *scene = runner->scene;
     SmObstacle *plane = sm_alloc((size_t)scene->obstacle_count, sizeof *plane);
     SmBoundary planes;
-    double basis[3][3], most = 0, fall = params->h * params->h / runner->body->voxels.cell;
+    double basis[3][3], most = 0, down[3];
     int rank = find_planes(scene, &planes, plane, basis);
-    bool tried = planes.obstacle_count > 0 && rank < 3;
+    memcpy(down, params->gravity, sizeof down);
+    leave_out(rank, basis, down);
+    bool tried = planes.obstacle_count > 0 && rank < 3 &&
+                 sm_dot(down, down) <= 1e-12 * sm_dot(params->gravity, params->gravity);
     if (tried) leave(runner, params, &planes, steps, mass, before, after);
     for (long i = 0; tried && i < runner->particles / runner->count; i++) {
         double by[3];
         for (int d = 0; d < 3; d++)
             by[d] = (after[i].linear[d] - before[i].linear[d]) / (before[i].mass * (double)steps) -
-                    fall * params->gravity[d];
-        for (int b = 0; b < rank; b++) {
-            double part = sm_dot(by, basis[b]);
-            for (int d = 0; d < 3; d++) by[d] -= part * basis[b][d];
-        }
+                    down[d] * params->h * params->h / runner->body->voxels.cell;
+        leave_out(rank, basis, by);
         double size = sqrt(sm_dot(by, by));
         most = fmax(most, isfinite(size) ? size : INFINITY);
     }

@@ -44,8 +44,8 @@ void bench_check_obstacles(const BenchCheck *check, const BenchScene *scene,
  * obstacles, contacts, breaking and gravity, for as many steps as make some 3e7 of one particle
  * (128 to 1024: in fewer the momenta's trembling, which does not grow, is what is seen), and
  * compares linear and angular momentum of each instance before and after; and does so with gravity
- * on the scene's planes, without friction, which leave the momentum along them as it is. Infinite
- * if not finite. */
+ * on the scene's planes, without friction, which leave the momentum along them as it is, unless
+ * bodies slide down them. Infinite if not finite. */
 BenchDrift bench_drift(const BenchRunner *runner);
 
 /* May it be: at most 5e-9 each in "single", 1e-14 in "double" precision, a fifth of that along

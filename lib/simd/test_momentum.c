@@ -395,7 +395,8 @@ TEST(what_acts_from_outside_between_steps_is_kept)
     }
 }
 
-/* A block on a plane, with and without friction, on a box, or hung up by its upper side. */
+/* A block on a plane, with and without friction, on a box, hung up by its upper side, or held there
+ * on a plane. */
 static void hold(Free *f, int kind)
 {
     static const SmObstacle obstacle[3] = {{.kind = SM_PLANE, .b = {0, 1, 0}},
@@ -410,6 +411,7 @@ static void hold(Free *f, int kind)
         .count = count, .particle = held, .pose = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
     SmBoundary bounds = {.handle_count = 1, .handle = &handle};
     if (kind < 3) bounds = (SmBoundary){.obstacle_count = 1, .obstacle = &obstacle[kind]};
+    if (kind == 4) bounds.obstacle_count = 1, bounds.obstacle = obstacle;
     f->type->bound(f->engine, &bounds);
     free(held);
 }
