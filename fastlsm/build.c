@@ -629,6 +629,6 @@ void lsm_free(Lsm *lsm)
     lsm_blocks_free(lsm->box);
     lsm_lattice_free(&lsm->lattice);
     sm_free_all(lsm->mass, lsm->slot, lsm->particle, lsm->x, lsm->v, lsm->layer_plane,
-                lsm->layer_block, lsm->thread_layer, lsm->obstacle, lsm->mark, lsm->listed,
-                lsm->origin, lsm->shift, lsm);
+                lsm->layer_block, lsm->thread_layer, lsm->obstacles.obstacle, lsm->mark,
+                lsm->listed, lsm->origin, lsm->shift, lsm);
 }

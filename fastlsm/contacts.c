@@ -105,18 +105,25 @@ void lsm_contacts_before(LsmContacts *k)
     sm_collide_begin(k->collide);
 }
 
-void lsm_contacts_after(LsmContacts *k)
+void lsm_contacts_after(LsmContacts *k, Momentum *momentum)
 {
     SmCollide *c = k->collide;
-    real *v = k->lsm->v, *x = k->lsm->x;
+    const Lsm *lsm = k->lsm;
+    real *v = lsm->v, *x = lsm->x;
     read_velocities(k);
     sm_collide_respond(c);
     for (long i = 0; i < c->node_count; i++) {
-        long at = index_of(k, c->node[i]);
-        for (int d = 0; d < 3; d++) {
-            v[at + d * SM_LANES] += (real)c->v[i][d];
-            x[at + d * SM_LANES] += (real)c->v[i][d];
+        long at = index_of(k, c->node[i]), count = lsm->lattice.count;
+        MomentumChange change;
+        for (int d = 0; d < 3; d++, at += SM_LANES) {
+            change.x[d] = (double)x[at];
+            change.v[d] = (double)v[at];
+            change.dx[d] = change.dv[d] = c->v[i][d];
+            v[at] += (real)c->v[i][d];
+            x[at] += (real)c->v[i][d];
         }
+        momentum_pushed(momentum, c->node[i] / count, lsm->slot[c->node[i] % count], &change,
+                        lsm->gravity, 1);
     }
 }
 

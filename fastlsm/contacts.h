@@ -26,7 +26,7 @@ long lsm_contacts_list(LsmContacts *contacts, SmContact **contact);
 
 /* Around a step. Links that broke since the last one make the body's description anew. */
 void lsm_contacts_before(LsmContacts *contacts);
-void lsm_contacts_after(LsmContacts *contacts);
+void lsm_contacts_after(LsmContacts *contacts, Momentum *momentum);
 
 /* Particles that nothing moves: particle p, as the lattice counts, of body b is b * particles + p.
  */

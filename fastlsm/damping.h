@@ -27,7 +27,7 @@ SM_INLINE void damp_blocks(Lsm *lsm, long block, int blocks, vec (*sum)[6])
         load3(lsm->x + block * 3 * SM_LANES, x);
         load3(lsm->v + block * 3 * SM_LANES, v);
         pull(sum[i], k->inverse_count, (real)lsm->params.damping, x, v);
-        integrate_position(lsm->obstacle, lsm->obstacle_count, shift_of(lsm, block), x, v);
+        integrate_position(&lsm->obstacles, shift_of(lsm, block), block, x, v);
         store3(lsm->v + block * 3 * SM_LANES, v);
         store3(lsm->x + block * 3 * SM_LANES, x);
     }

@@ -318,6 +318,7 @@ static SmCode engine_create(const SmVoxels *voxels, const SmEngineParams *params
     bool abreast = e->bodies > 1;
     e->momentum = momentum_build(abreast ? e->count : lsm->blocks, e->bodies, abreast,
                                  keep_steps(e->count), lsm->threads);
+    lsm->obstacles.notes = &e->momentum->notes;
     e->rounding = rounding_square(longest(&lsm->lattice), lsm->w);
     divide_momentum(e);
     sm_team_leave(team);
@@ -361,28 +362,28 @@ static void move_held(SmEngine *e)
     for (int i = 0; i < e->handles.count; i++)
         for (long k = 0; k < e->handles.handle[i].count; k++, at++) {
             double x0[3], to[3];
-            rest_position(e, e->handles.handle[i].particle[k], x0);
+            long number = e->handles.handle[i].particle[k];
+            MomentumChange change;
+            rest_position(e, number, x0);
             sm_pose_apply((const double(*)[4])e->handles.handle[i].pose, x0, to);
             for (int d = 0; d < 3; d++) {
                 const double *origin;
-                long index = index_of(e, e->handles.handle[i].particle[k], d, &origin);
+                long index = index_of(e, number, d, &origin);
+                change.x[d] = (double)x[index];
+                change.v[d] = (double)v[index];
                 x[index] = (real)((to[d] - origin[d]) / e->lsm->cell);
                 v[index] = (real)((to[d] - e->handles.before[at][d]) / e->lsm->cell);
+                change.dx[d] = (double)x[index] - change.x[d];
+                change.dv[d] = (double)v[index] - change.v[d];
             }
+            momentum_pushed(e->momentum, number / e->count, e->lsm->slot[inner_of(e, number)],
+                            &change, e->lsm->gravity, 1);
         }
-}
-
-/* Does nothing but gravity act on the body? */
-static bool is_free(const SmEngine *e)
-{
-    return e->handles.particles == 0 && e->lsm->obstacle_count == 0 &&
-           !(e->contacts && lsm_contacts_count(e->contacts) > 0);
 }
 
 static void begin_momentum(SmEngine *e)
 {
-    if (is_free(e))
-        momentum_begin(e->momentum, 0, NULL, field_of(e, SM_POSITION), field_of(e, SM_VELOCITY));
+    momentum_begin(e->momentum, 0, NULL, field_of(e, SM_POSITION), field_of(e, SM_VELOCITY));
     const real *fall = e->lsm->gravity;
     bool rests = momentum_rests(e->momentum) && fall[0] == 0 && fall[1] == 0 && fall[2] == 0;
     e->lsm->rounding = rests ? e->rounding : 0;
@@ -392,14 +393,12 @@ static void begin_momentum(SmEngine *e)
  */
 static void keep_momentum(SmEngine *e)
 {
-    bool broke = e->lsm->broken != e->divided_at;
-    if (!is_free(e)) momentum_forget(e->momentum);
-    if (!is_free(e) || !momentum_due(e->momentum)) return;
-    if (broke)
+    real *x = field_of(e, SM_POSITION), *v = field_of(e, SM_VELOCITY);
+    if (!momentum_due(e->momentum)) return;
+    if (e->lsm->broken != e->divided_at)
         divide_momentum(e);
     else
-        momentum_keep(e->momentum, 0, NULL, field_of(e, SM_POSITION), field_of(e, SM_VELOCITY),
-                      e->lsm->gravity);
+        momentum_keep(e->momentum, 0, NULL, x, v, e->lsm->gravity);
     momentum_kept(e->momentum);
 }
 
@@ -472,8 +471,10 @@ static void engine_step(SmEngine *e, SmLaps *laps)
         sm_lap(laps, SM_OTHER);
     }
     lsm_step(lsm, laps);
+    momentum_settle(e->momentum, 0, NULL, field_of(e, SM_POSITION), field_of(e, SM_VELOCITY),
+                    lsm->gravity); /* before others change what obstacles have pushed */
     move_held(e);
-    if (e->contacts) lsm_contacts_after(e->contacts);
+    if (e->contacts) lsm_contacts_after(e->contacts, e->momentum);
     if (lsm->params.strain_limit > 0 && isfinite(lsm->params.strain_limit)) lsm_fracture(lsm);
     keep_momentum(e);
     if (lsm->steps >= e->recentre) recentre(e);
@@ -569,27 +570,31 @@ static void engine_push(SmEngine *e, long count, const long *particle, const dou
     real *x = field_of(e, SM_POSITION), *v = field_of(e, SM_VELOCITY);
     for (long i = 0; i < count; i++) {
         assert(particle[i] >= 0 && particle[i] < e->bodies * e->count);
-        double scale = e->lsm->params.h / (e->lsm->cell * kilograms(e, particle[i])), at[3], dv[3];
+        double scale = e->lsm->params.h / (e->lsm->cell * kilograms(e, particle[i]));
+        MomentumChange change;
         for (int d = 0; d < 3; d++) {
             const double *origin;
             long index = index_of(e, particle[i], d, &origin);
-            at[d] = (double)x[index];
-            dv[d] = impulse[i][d] * scale;
-            v[index] += (real)dv[d];
+            change.x[d] = (double)x[index];
+            change.v[d] = (double)v[index];
+            change.dx[d] = 0;
+            change.dv[d] = impulse[i][d] * scale;
+            v[index] += (real)change.dv[d];
         }
         long p = inner_of(e, particle[i]);
-        momentum_pushed(e->momentum, particle[i] / e->count, e->lsm->slot[p], at, dv,
-                        e->lsm->gravity);
+        momentum_pushed(e->momentum, particle[i] / e->count, e->lsm->slot[p], &change,
+                        e->lsm->gravity, 0);
     }
 }
 
 static void copy_obstacles(Lsm *lsm, const SmBoundary *boundary)
 {
-    free(lsm->obstacle);
-    lsm->obstacle_count = boundary->obstacle_count;
-    lsm->obstacle = sm_alloc((size_t)boundary->obstacle_count, sizeof *lsm->obstacle);
-    for (int i = 0; i < boundary->obstacle_count; i++)
-        lsm->obstacle[i] = obstacle_in_cells(&boundary->obstacle[i], lsm->home, lsm->cell);
+    Obstacles *o = &lsm->obstacles;
+    free(o->obstacle);
+    o->count = boundary->obstacle_count;
+    o->obstacle = sm_alloc((size_t)o->count, sizeof *o->obstacle);
+    for (int i = 0; i < o->count; i++)
+        o->obstacle[i] = obstacle_in_cells(&boundary->obstacle[i], lsm->home, lsm->cell);
     shift_obstacles(lsm);
 }
 
@@ -607,7 +612,7 @@ static void fix_held(SmEngine *e)
 
 static void engine_bound(SmEngine *e, const SmBoundary *boundary)
 {
-    momentum_forget(e->momentum);
+    if (boundary->obstacle_count) momentum_notes(e->momentum);
     sm_handles_set(&e->handles, boundary, e->bodies * e->count);
     if (e->contacts) fix_held(e);
     copy_obstacles(e->lsm, boundary);

@@ -125,7 +125,7 @@ SM_INLINE void move_block(Lsm *lsm, long block, const vec sum[3])
     }
     integrate_velocity(pull, lsm->gravity, lsm->rounding, live, v);
     if (!lsm->damp_now) {
-        integrate_position(lsm->obstacle, lsm->obstacle_count, shift_of(lsm, block), x, v);
+        integrate_position(&lsm->obstacles, shift_of(lsm, block), block, x, v);
         store3(lsm->x + block * 3 * SM_LANES, x);
     }
     store3(lsm->v + block * 3 * SM_LANES, v);

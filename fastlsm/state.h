@@ -138,8 +138,7 @@ typedef struct Lsm {
 
     real gravity[3]; /* cells per step and step */
     real rounding;   /* of a body at rest, square of what goals are off (integrate.h); else 0 */
-    int obstacle_count;
-    Obstacle *obstacle;
+    Obstacles obstacles;
     vec (*shift)[3]; /* (origin - home) / cell: from x to obstacle coordinates; [layers] of
                         instances */
     double home[3];
@@ -158,7 +157,7 @@ static inline long place_of(const Lsm *lsm, long body, long p)
 /* Of a block; only where there are obstacles: a division takes longer than it looks. */
 SM_INLINE const vec *shift_of(const Lsm *lsm, long block)
 {
-    bool one = lsm->bodies == 1 || lsm->obstacle_count == 0;
+    bool one = lsm->bodies == 1 || lsm->obstacles.count == 0;
     return lsm->shift[one ? 0 : block / lsm->lattice.count];
 }
 

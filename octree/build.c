@@ -148,7 +148,7 @@ void oct_free(Oct *oct)
     oct_dynamic_body_free(oct->dynamic);
     oct_ghosts_free(oct);
     sm_free_all(oct->collinear, oct->collinear_of, oct->child, oct->children, oct->row, oct->live,
-                oct->block, oct->share, oct->spread, oct->rows, oct->body, oct->obstacle);
+                oct->block, oct->share, oct->spread, oct->rows, oct->body, oct->obstacles.obstacle);
     free(oct);
 }
 

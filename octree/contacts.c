@@ -104,18 +104,23 @@ void oct_contacts_before(OctContacts *k)
     sm_collide_begin(k->collide);
 }
 
-void oct_contacts_after(OctContacts *k)
+void oct_contacts_after(OctContacts *k, Momentum *momentum)
 {
     SmCollide *c = k->collide;
     read_velocities(k);
     sm_collide_respond(c);
     for (long i = 0; i < c->node_count; i++) {
         OctState *body = &k->oct->body[c->node[i] / k->nodes];
+        long leaf = k->leaf[c->node[i] % k->nodes];
+        MomentumChange change;
+        oct_moved_from(k->oct, body, leaf, &change);
         for (int d = 0; d < 3; d++) {
-            long at = oct_index(k->leaf[c->node[i] % k->nodes], d);
+            long at = oct_index(leaf, d);
+            change.dx[d] = change.dv[d] = c->v[i][d];
             body->v[at] += (real)c->v[i][d];
             body->x[at] += (real)c->v[i][d];
         }
+        momentum_pushed(momentum, body - k->oct->body, leaf, &change, k->oct->gravity, 1);
     }
 }
 

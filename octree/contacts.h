@@ -36,7 +36,7 @@ long oct_contacts_list(OctContacts *contacts, double cell, double (*turn)[9], Sm
 
 /* Around a step. */
 void oct_contacts_before(OctContacts *contacts);
-void oct_contacts_after(OctContacts *contacts);
+void oct_contacts_after(OctContacts *contacts, Momentum *momentum);
 
 /* Nodes that nothing moves: node p of instance b is b * nodes + p (outline.h). */
 void oct_contacts_fix(OctContacts *contacts, long count, const long *node);

@@ -140,7 +140,7 @@ static void slow(OctTask *task, long first, long last)
         load3(task->body->v + at, v);
         pull(sum, oct->block[block].inverse_reach, (real)oct->params.damping, x, v);
         oct_shift(oct, task->body, block, shift);
-        integrate_position(oct->obstacle, oct->obstacle_count, shift, x, v);
+        integrate_position(&oct->obstacles, shift, oct_block(oct, task->body, block), x, v);
         store3(task->body->v + at, v);
         store3(task->body->x + at, x);
     }

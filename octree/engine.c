@@ -410,22 +410,30 @@ static void engine_destroy(SmEngine *e)
     sm_free_all(e->pose, e->leaf, e->number, e);
 }
 
-/* Does nothing but gravity act on the bodies? */
-static bool is_free(const SmEngine *e)
+/* NULL: its pieces are those of another structure. */
+static Momentum *divided(const SmEngine *e)
 {
-    return e->handle_nodes.count == 0 && e->oct->obstacle_count == 0 &&
-           !(e->contacts && oct_contacts_count(e->contacts) > 0);
+    return e->divided ? e->momentum : NULL;
 }
 
 static void begin_momentum(SmEngine *e)
 {
+    e->oct->obstacles.notes = e->divided ? &e->momentum->notes : NULL;
     /* after a change it is divided into its pieces once the kick has been added (state.h) */
-    bool begins = e->divided && is_free(e);
-    for (OctState *b = e->oct->body; begins && b < e->oct->body + e->oct->instances; b++)
+    for (OctState *b = e->oct->body; e->divided && b < e->oct->body + e->oct->instances; b++)
         momentum_begin(e->momentum, b - e->oct->body, (const double(*)[3])b->origin, b->x, b->v);
     const real *fall = e->oct->gravity;
     bool rests = momentum_rests(e->momentum) && fall[0] == 0 && fall[1] == 0 && fall[2] == 0;
     e->oct->rounding = rests ? e->oct->at_rest : 0;
+}
+
+/* Before others change what obstacles have pushed. */
+static void settle_momentum(SmEngine *e)
+{
+    const Oct *oct = e->oct;
+    for (const OctState *b = oct->body; e->divided && b < oct->body + oct->instances; b++)
+        momentum_settle(e->momentum, b - oct->body, (const double(*)[3])b->origin, b->x, b->v,
+                        oct->gravity);
 }
 
 /* After the first step of a body that has changed its pieces are found again. */
@@ -433,8 +441,7 @@ static void keep_momentum(SmEngine *e)
 {
     Oct *oct = e->oct;
     bool keeps = oct->params.weighting == OCT_CONSERVING;
-    if (!is_free(e)) momentum_forget(e->momentum);
-    if (!is_free(e) || !momentum_due(e->momentum)) return;
+    if (!momentum_due(e->momentum)) return;
     if (!keeps) momentum_forget(e->momentum);
     for (long i = 0; i < oct->instances && e->divided && keeps; i++) {
         OctState *b = &oct->body[i];
@@ -454,9 +461,10 @@ static void engine_step(SmEngine *e, SmLaps *laps)
         sm_lap(laps, SM_OTHER);
     }
     oct_step(e->oct, laps);
+    settle_momentum(e);
     oct_handle_nodes_move(&e->handle_nodes, e->oct, &e->base.structure,
-                          (const double(*)[3][4])e->pose);
-    if (e->contacts) oct_contacts_after(e->contacts);
+                          (const double(*)[3][4])e->pose, divided(e));
+    if (e->contacts) oct_contacts_after(e->contacts, divided(e));
     keep_momentum(e);
     if (e->oct->steps >= e->oct->recentre) oct_recentre(e->oct);
     sm_lap(laps, SM_OTHER);
@@ -474,16 +482,15 @@ static void engine_push(SmEngine *e, long count, const long *particle, const dou
     for (long i = 0; i < count; i++) {
         assert(particle[i] >= 0 && particle[i] < e->oct->instances * e->count);
         long leaf = leaf_of(e, particle[i]);
-        double scale = e->h / (e->base.structure.cell * e->base.structure.mass[leaf]), at[3], dv[3];
+        double scale = e->h / (e->base.structure.cell * e->base.structure.mass[leaf]);
         OctState *body = body_of(e, particle[i]);
+        MomentumChange change;
+        oct_moved_from(e->oct, body, leaf, &change);
         for (int d = 0; d < 3; d++) {
-            long index = oct_index(leaf, d);
-            at[d] = oct_origin(e->oct, body, leaf)[d] + (double)body->x[index];
-            dv[d] = impulse[i][d] * scale;
-            body->v[index] += (real)dv[d];
+            change.dv[d] = impulse[i][d] * scale;
+            body->v[oct_index(leaf, d)] += (real)change.dv[d];
         }
-        if (e->divided)
-            momentum_pushed(e->momentum, particle[i] / e->count, leaf, at, dv, e->oct->gravity);
+        momentum_pushed(divided(e), particle[i] / e->count, leaf, &change, e->oct->gravity, 0);
     }
 }
 
@@ -491,7 +498,7 @@ static void engine_bound(SmEngine *e, const SmBoundary *boundary)
 {
     Oct *oct = e->oct;
     renumber(e);
-    momentum_forget(e->momentum);
+    if (boundary->obstacle_count) momentum_notes(e->momentum);
     sm_handles_set(&e->handle_nodes.handles, boundary, e->oct->instances * e->count);
     e->handle_nodes.count = 0;
     for (int i = 0; i < e->handle_nodes.handles.count; i++)
@@ -500,14 +507,15 @@ static void engine_bound(SmEngine *e, const SmBoundary *boundary)
             oct_handle_nodes_add(&e->handle_nodes, number / e->count, (int)leaf_of(e, number), i);
         }
     if (e->contacts) fix_held(e);
-    if (!oct->obstacle || oct->obstacle_count != boundary->obstacle_count) {
-        free(oct->obstacle);
-        oct->obstacle_count = boundary->obstacle_count;
-        oct->obstacle = sm_alloc((size_t)boundary->obstacle_count, sizeof *oct->obstacle);
+    Obstacles *o = &oct->obstacles;
+    if (!o->obstacle || o->count != boundary->obstacle_count) {
+        free(o->obstacle);
+        o->count = boundary->obstacle_count;
+        o->obstacle = sm_alloc((size_t)o->count, sizeof *o->obstacle);
     }
-    for (int i = 0; i < boundary->obstacle_count; i++)
-        oct->obstacle[i] = obstacle_in_cells(&boundary->obstacle[i], e->base.structure.origin,
-                                             e->base.structure.cell);
+    for (int i = 0; i < o->count; i++)
+        o->obstacle[i] = obstacle_in_cells(&boundary->obstacle[i], e->base.structure.origin,
+                                           e->base.structure.cell);
 }
 
 static void engine_masses(SmEngine *e, double *mass)

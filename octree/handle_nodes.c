@@ -64,12 +64,14 @@ void oct_handle_nodes_note(OctHandleNodes *nodes, const Oct *oct)
 }
 
 void oct_handle_nodes_move(const OctHandleNodes *nodes, Oct *oct, const OctStructure *structure,
-                           const double (*pose)[3][4])
+                           const double (*pose)[3][4], Momentum *momentum)
 {
     for (long i = 0; i < nodes->count; i++) {
         const struct OctHandleNode *node = &nodes->node[i];
         OctState *body = &oct->body[node->body];
         double rest[3], x0[3], to[3];
+        MomentumChange change;
+        oct_moved_from(oct, body, node->leaf, &change);
         oct_structure_centre(structure, node->leaf, rest);
         sm_pose_apply((const double(*)[4])pose[node->body], rest, x0);
         sm_pose_apply((const double(*)[4])nodes->handles.handle[node->handle].pose, x0, to);
@@ -78,6 +80,10 @@ void oct_handle_nodes_move(const OctHandleNodes *nodes, Oct *oct, const OctStruc
             double x = (to[d] - structure->origin[d]) / structure->cell;
             body->x[index] = (real)(x - oct_origin(oct, body, node->leaf)[d]);
             body->v[index] = (real)(x - node->before[d]);
+            change.dx[d] =
+                oct_origin(oct, body, node->leaf)[d] + (double)body->x[index] - change.x[d];
+            change.dv[d] = (double)body->v[index] - change.v[d];
         }
+        momentum_pushed(momentum, node->body, node->leaf, &change, oct->gravity, 1);
     }
 }

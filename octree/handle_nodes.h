@@ -40,6 +40,6 @@ void oct_handle_nodes_transfer(OctHandleNodes *nodes, const OctTree *tree, const
  * the step made of them. `pose` is [instances], rest to initial position. */
 void oct_handle_nodes_note(OctHandleNodes *nodes, const Oct *oct);
 void oct_handle_nodes_move(const OctHandleNodes *nodes, Oct *oct, const OctStructure *structure,
-                           const double (*pose)[3][4]);
+                           const double (*pose)[3][4], Momentum *momentum);
 
 #endif

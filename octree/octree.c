@@ -293,7 +293,7 @@ static void move(OctTask *task, long first, long last)
         if (!oct->damp_now) {
             vec shift[3];
             oct_shift(oct, body, block, shift);
-            integrate_position(oct->obstacle, oct->obstacle_count, shift, x, v);
+            integrate_position(&oct->obstacles, shift, oct_block(oct, body, block), x, v);
             store3(body->x + at, x);
         }
         store3(body->v + at, v);

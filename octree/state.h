@@ -118,8 +118,7 @@ typedef struct {
     real gravity[3];
     real rounding, at_rest; /* square of what goals are off by rounding (integrate.h), of bodies at
                              * rest, else 0; and what it is then */
-    int obstacle_count;
-    Obstacle *obstacle; /* in finest cells from where origins count */
+    Obstacles obstacles;    /* in finest cells from where origins count */
 } Oct;
 
 /* Phases of a step, in order. */
@@ -169,6 +168,23 @@ static inline long oct_field(long leaf, int fields, int field)
 static inline long oct_index(long leaf, int d)
 {
     return oct_field(leaf, 3, d);
+}
+
+/* The number of a body's block among those of all. */
+static inline long oct_block(const Oct *oct, const OctState *body, long block)
+{
+    return (body - oct->body) * oct->blocks + block;
+}
+
+/* What is about to be changed from outside. */
+static inline void oct_moved_from(const Oct *oct, const OctState *body, long leaf,
+                                  MomentumChange *change)
+{
+    for (int d = 0; d < 3; d++) {
+        change->x[d] = oct_origin(oct, body, leaf)[d] + (double)body->x[oct_index(leaf, d)];
+        change->v[d] = (double)body->v[oct_index(leaf, d)];
+        change->dx[d] = change->dv[d] = 0;
+    }
 }
 
 /* The lists that goal positions and damping sum over. */

@@ -4,7 +4,8 @@
 # and lets every release read the files of every other. Prints each step to standard error, and README.md's table.
 #
 # usage: scripts/check_systems.sh [--quick] [RELEASE...]     default: bookworm trixie; --quick leaves out scripts/test
-#        TMPDIR holds the roots while this runs, 8 GB each; MIRROR is Debian's archive (http://deb.debian.org/debian)
+#        TMPDIR holds the roots while this runs, 8 GB each; MIRROR is the archive (http://deb.debian.org/debian), and
+#        COMPONENTS what of it (main): of Ubuntu's main,universe
 # exit codes: 0 all passed, 1 a step failed, 2 usage, 3 not root, or a program is missing
 set -um # -m: steps, and what they test, can be interrupted, though they run in the background
 # shellcheck source=scripts/setup
@@ -12,14 +13,14 @@ set -um # -m: steps, and what they test, can be interrupted, though they run in 
 columns=(scripts/run view scripts/test package wheel "stored files")
 declare -A cells # "RELEASE COLUMN": ok or FAILED
 count=0 status=0 running='' left_out='scripts/test quick' logs=$root/build-systems
-export mirror=${MIRROR:-http://deb.debian.org/debian}
+export mirror=${MIRROR:-http://deb.debian.org/debian} components=${COMPONENTS:-main}
 sweep='scripts/run sweep --scene penguin --engine fastlsm --w 1:4 --frames 5 --block 100 -o stored/sweep.h5'
 
 # make_root RELEASE FOLDER: makes a minimal root that knows localhost, and a copy of it for the package; puts the clone,
 # and the mesh that README.md calls MESH.obj, into the first.
 # shellcheck disable=SC2317 # step() calls it
 make_root() {
-    debootstrap --variant=minbase "$1" "$2" "$mirror" && echo 127.0.0.1 localhost >"$2/etc/hosts" &&
+    debootstrap --variant=minbase --components="$components" "$1" "$2" "$mirror" && echo 127.0.0.1 localhost >"$2/etc/hosts" &&
         cp -a -- "$2" "$2-package" &&
         mkdir -p -- "$2-package/shapebench/build" && cp -a -- "$folder/clone" "$2/shapebench" &&
         PYTHONPATH=$2/shapebench/scripts python3 -Bc 'import small_inputs; print(small_inputs.BOX)' >"$2/shapebench/MESH.obj"
@@ -95,7 +96,7 @@ store() {
 
 # read_files RELEASE FOLDER: reads stored files in every way; regress returns 7 where other programs disturbed the times.
 read_files() {
-    line "$1" "stored files" "scripts/run report $2/x.h5 $2/sweep.h5 -o report.html"
+    line "$1" "stored files" "scripts/run report $2/x.h5 $2/sweep.h5 -o $2.html"
     line "$1" "stored files" "scripts/run regress $2/x.h5 $2/x.h5 || [ \$? -eq 7 ]"
     line "$1" "stored files" "scripts/run sweep $2/sweep.h5"
     line "$1" "stored files" "PYTHONPATH=lib/python python3 -c 'import shapebench.results as r

@@ -55,13 +55,16 @@ for clang in 15 19; do
         said=$(answer "$what")
         grep -q -- '^.* install -y --no-remove ' <<<"$said" || fail "$what: not installed, or others may go: $said"
     done
-    grep -q "apt-get has no libclang-rt-15-dev-wasm32" <<<"$said" || [ "$clang" != 15 ] || fail "no word: $said"
+    [ "$(grep -c "no package is known here for libclang-rt-15-dev-wasm32:" <<<"$said")" = 1 ] || [ "$clang" != 15 ] ||
+        fail "not one word: $said"
     answer test | grep -q " libclang-rt-$clang-dev " || fail "not clang $clang's runtime"
     ! answer view | grep -q 'install.*libclang-rt-15-dev-wasm32' || fail "a name that does not exist is asked for"
 done
 stand_in apt-get 'echo no net; exit 100'
 said=$(TMPDIR=/nonexistent answer run)
 grep -q 'no net' <<<"$said" && grep -q 'apt-get failed' <<<"$said" || fail "what apt-get said is lost: $said"
+stand_in apt-get "echo \"\$*\" >>'$folder/asked'; case \$* in *install*arpack*) exit 100 ;; esac"
+[[ $(answer run) = *'optional: libarpack2-dev; missing without it'*'libassimp-dev'* ]] || fail "not each for itself: $(answer run)"
 stand_in apt-get
 [[ $(TMPDIR=/nonexistent answer run) != *failed* ]] || fail "a TMPDIR that is not there stops set-up"
 
@@ -69,6 +72,9 @@ rm "$folder/bin/sudo"
 said=$(answer run)
 ! grep -q sudo <<<"$said" || fail "sudo is named where there is none: $said"
 grep -q '^    apt-get install .* libhdf5-dev' <<<"$said" || fail "no line to type: $said"
+stand_in pkg-config 'case $* in *gsl) exit 1 ;; esac'
+[[ $(answer run) = *' libgsl-dev'* && $(answer run) != *' libjansson-dev'* ]] || fail "asked for what is there: $(answer run)"
+rm "$folder/bin/pkg-config"
 stand_in sudo 'exit 1'
 answer run | grep -q '^    sudo apt-get install ' || fail "sudo is not named"
 
@@ -78,6 +84,8 @@ while read -r manager command hdf5 wasm; do # elsewhere
     answer run | grep -q "^    ${command//_/ } .*$hdf5" || fail "$manager: $(answer run)"
     answer run | grep -q "optional: .*arpack.*meshless" || fail "$manager: no optional package is named"
     answer view | grep -q "^    .* python.*" || fail "$manager: view does not name python"
+    [ -z "$(answer test | grep '^    ' | tr ' ' '\n' | grep . | sort | uniq -d)" ] || fail "named twice: $(answer test)"
+    [[ $(answer view | grep '^    ') != *wasm_runtime* ]] || fail "$manager: what is no package is to be installed"
     answer view | grep -q " $wasm" || fail "$manager: view does not name wasi-libc or the runtime: $(answer view)"
 done <<'SYSTEMS'
 dnf dnf_install hdf5-devel wasi-libc-devel

@@ -451,6 +451,8 @@ void bench_check_text(const BenchDeviation *found, size_t size, char *text)
         sm_append(text, size,
                   ", over %ld free steps it drifts by %.1g cells and %.1g radians a step",
                   found->drift.steps, found->drift.linear, found->drift.angular);
+    if (found->drift.held > 0)
+        sm_append(text, size, ", along the planes that hold it by %.1g", found->drift.held);
     if (found->damping_tolerance > 0)
         sm_append(text, size, ", damping within %.1g of the largest velocity (allowed %.0e)",
                   found->damping_error, found->damping_tolerance);

@@ -433,6 +433,33 @@ TEST(findings_add_up)
     assert_int_equal(worst.contact_nodes, 90);
 }
 
+/* Just below each bound, and just above it. */
+TEST(drift_has_bounds)
+{
+    static const struct {
+        const char *precision, *words;
+        BenchDrift drift;
+    } at[] = {{"single", "free steps", {.linear = 5e-9}},
+              {"single", "free steps", {.angular = 5e-9}},
+              {"single", "along the planes", {.held = 1e-9}},
+              {"double", "free steps", {.linear = 1e-14}},
+              {"double", "free steps", {.angular = 1e-14}},
+              {"double", "along the planes", {.held = 2e-15}},
+              {"single", "free steps", {.linear = 1.5e-8, .apart = 3}}};
+    for (size_t i = 0; i < sizeof at / sizeof *at; i++)
+        for (int above = 0; above < 2; above++) {
+            char reason[160] = "";
+            double factor = above ? 1.01 : 0.99;
+            BenchDrift drift = at[i].drift;
+            drift.linear *= factor;
+            drift.angular *= factor;
+            drift.held *= factor;
+            assert_int_equal(bench_drift_verdict(&drift, at[i].precision, sizeof reason, reason),
+                             !above);
+            if (above && !strstr(reason, at[i].words)) fail_msg("%zu: '%s'", i, reason);
+        }
+}
+
 TEST(what_was_left_out_is_said)
 {
     char text[512];

@@ -33,6 +33,7 @@ static void check_drift(const BenchRunner *runner, BenchDeviation *worst, BenchR
     if (drift.steps > worst->drift.steps) worst->drift.steps = drift.steps;
     worst->drift.apart = fmax(worst->drift.apart, drift.apart);
     row->drift = worst->drift.linear = fmax(worst->drift.linear, drift.linear);
+    worst->drift.held = fmax(worst->drift.held, drift.held);
     row->twist = worst->drift.angular = fmax(worst->drift.angular, drift.angular);
     row->drift_steps = worst->drift.steps;
     bench_check_text(worst, sizeof row->found, row->found);

@@ -443,9 +443,20 @@ hid_t bench_h5_find_dataset(BenchH5 *h5, hid_t parent, const char *name, int ran
     return dataset;
 }
 
+static bool has_checksum(hid_t dataset)
+{
+    hid_t layout = H5Dget_create_plist(dataset);
+    unsigned flags;
+    bool found =
+        H5Pget_filter_by_id2(layout, H5Z_FILTER_FLETCHER32, &flags, NULL, NULL, 0, NULL, NULL) >= 0;
+    H5Pclose(layout);
+    return found || H5Dget_storage_size(dataset) == 0; /* empty */
+}
+
 void bench_h5_read(BenchH5 *h5, hid_t dataset, hid_t type, void *values)
 {
     if (h5->failed) return;
+    h5->unchecked |= !has_checksum(dataset);
     if (H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
         bench_h5_fail(h5, "a dataset cannot be read");
 }
@@ -540,9 +551,15 @@ SmCode bench_h5_load(const char *path, void (*read)(BenchH5 *h5, void *record), 
         return sm_fail(
             error, SM_INPUT,
             "%.200s: HDF5 without checksums, as shapebench stored it until November 2026: "
-            "measure again, or convert it: h5repack -L -f FLET %.200s NEW.h5",
+            "measure again, or convert it: h5repack -m 1 -L -f FLET %.200s NEW.h5",
             path, path);
     bench_h5_open(&h5, path);
+    if (strstr(h5.message, "lock file") || strstr(h5.message, "already open"))
+        return sm_fail(
+            error, SM_INPUT,
+            "%.200s: another program has it open, or ended while it had: close it there, "
+            "or type h5clear -s %.200s",
+            path, path);
     if (h5.failed)
         return sm_fail(error, SM_INPUT, "%.200s: not an HDF5 file, or cut off (%.200s)", path,
                        h5.message);
@@ -552,6 +569,7 @@ SmCode bench_h5_load(const char *path, void (*read)(BenchH5 *h5, void *record), 
         return sm_fail(error, SM_INPUT, "cannot use %.200s: %s%.250s", path,
                        checksum ? "damaged, or changed by another program: " : "", h5.message);
     if (checksum)
-        fprintf(stderr, "%s: written to by another program; HDF5's own checksums hold\n", path);
+        fprintf(stderr, "%s: written to by another program; %s\n", path,
+                h5.unchecked ? "some of its data have no checksums" : "HDF5's own checksums hold");
     return SM_OK;
 }

@@ -21,6 +21,7 @@ typedef struct {
     const char *created; /* path of a file that is written, else NULL */
     hsize_t size;        /* of a file that is loaded: its datasets hold no more; 0: not known */
     hsize_t found;       /* bytes of datasets so far */
+    bool unchecked;      /* something was read that has no checksum */
     char message[256];   /* what failed */
 } BenchH5;
 

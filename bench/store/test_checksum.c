@@ -4,6 +4,9 @@
 #include "checksum.h"
 #include "h5.h"
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 enum { NUMBERS = 500 };
 
 static const hsize_t numbers_size = NUMBERS;
@@ -118,6 +121,49 @@ TEST(a_file_that_another_program_has_written_to_is_read)
     write_changed("changed.h5", lose_kind);
     is_noticed("changed.h5");
     loads("changed.h5");
+}
+
+static void replace_by_plain(hid_t file)
+{
+    double number[NUMBERS];
+    hid_t space = H5Screate_simple(1, &numbers_size, NULL);
+    for (int i = 0; i < NUMBERS; i++) number[i] = i;
+    H5Ldelete(file, "many", H5P_DEFAULT);
+    hid_t plain =
+        H5Dcreate2(file, "many", H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    H5Dwrite(plain, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, number);
+    H5Dclose(plain);
+    H5Sclose(space);
+}
+
+static void find_unchecked(BenchH5 *h5, void *record)
+{
+    double number[NUMBERS];
+    read_numbers(h5, number);
+    *(bool *)record = h5->unchecked;
+}
+
+TEST(data_without_checksums_are_told_from_those_that_have_them)
+{
+    bool unchecked[2];
+    write_changed("changed.h5", lose_kind);
+    write_changed("plain.h5", replace_by_plain);
+    assert_int_equal(bench_h5_load(path_in("changed.h5"), find_unchecked, &unchecked[0], NULL), 0);
+    assert_int_equal(bench_h5_load(path_in("plain.h5"), find_unchecked, &unchecked[1], NULL), 0);
+    assert_true(!unchecked[0] && unchecked[1]);
+}
+
+TEST(a_file_that_another_program_has_open_is_refused_with_the_remedy)
+{
+    size_t size;
+    free(store("open.h5", &size));
+    pid_t child = fork();
+    if (child == 0) { /* ends while it has it open */
+        H5Fopen(path_in("open.h5"), H5F_ACC_RDWR, H5P_DEFAULT);
+        _exit(0);
+    }
+    waitpid(child, NULL, 0);
+    refuses("open.h5", read_numbers, "another program has it open, or ended while it had");
 }
 
 TEST(a_file_of_the_old_format_is_refused_with_the_remedy)

@@ -7,6 +7,7 @@
 #ifndef SM_INTEGRATE_H
 #define SM_INTEGRATE_H
 
+#include "../simd/momentum.h"
 #include "obstacle.h"
 
 /* How far a goal may be from its particle by rounding alone, squared: four times what was measured
@@ -42,12 +43,24 @@ SM_INLINE void integrate_velocity(vec pull[3], const real gravity[3], real round
     for (int d = 0; d < 3; d++) v[d] += pull[d] + gravity[d] * live;
 }
 
-/* Eq. 2, then obstacles in turn; x + shift is in the obstacles' coordinates. */
-SM_INLINE void integrate_position(const Obstacle *obstacle, int count, const vec shift[3], vec x[3],
+/* What may stand in the way: x + shift is in the obstacles' coordinates. */
+typedef struct {
+    Obstacle *obstacle;
+    int count;
+    const MomentumNotes *notes; /* of all bodies' blocks, or NULL */
+} Obstacles;
+
+/* Eq. 2 of a block, then obstacles in turn. */
+SM_INLINE void integrate_position(const Obstacles *o, const vec shift[3], long block, vec x[3],
                                   vec v[3])
 {
+    vec before[3], speed[3];
     for (int d = 0; d < 3; d++) x[d] += v[d];
-    if (count) obstacles_push(obstacle, count, shift, x, v);
+    if (!o->count) return;
+    lanes_copy(3, x, before);
+    lanes_copy(3, v, speed);
+    if (obstacles_push(o->obstacle, o->count, shift, x, v))
+        momentum_note(o->notes, block, before, speed);
 }
 
 #endif

@@ -142,10 +142,11 @@ SM_INLINE bool obstacle_missed(const Obstacle *o, const vec x[3])
     return !lanes_any(~(lanes_dot(d, d) > (real)1.01 * o->radius * o->radius));
 }
 
-/* All obstacles in turn on the particles at x + shift. */
-SM_INLINE void obstacles_push(const Obstacle *obstacle, int count, const vec shift[3], vec x[3],
+/* All obstacles in turn on the particles at x + shift; whether any is pushed. */
+SM_INLINE bool obstacles_push(const Obstacle *obstacle, int count, const vec shift[3], vec x[3],
                               vec v[3])
 {
+    bool pushed = false;
     for (int n = 0; n < count; n++) {
         vec at[3], normal[3];
         for (int i = 0; i < 3; i++) at[i] = x[i] + shift[i];
@@ -153,6 +154,7 @@ SM_INLINE void obstacles_push(const Obstacle *obstacle, int count, const vec shi
         vec depth = obstacle_depth(&obstacle[n], at, normal);
         ivec inside = depth > 0;
         if (!lanes_any(inside)) continue;
+        pushed = true;
         vec outwards = lanes_dot(v, normal), kept = lanes_max(outwards, lanes_set(0));
         real slip = 1 - obstacle[n].friction;
         for (int i = 0; i < 3; i++) {
@@ -161,6 +163,7 @@ SM_INLINE void obstacles_push(const Obstacle *obstacle, int count, const vec shi
             x[i] = lanes_select(inside, x[i] + depth * normal[i], x[i]);
         }
     }
+    return pushed;
 }
 
 #endif

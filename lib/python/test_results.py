@@ -5,6 +5,7 @@ usage: test_results.py SHAPEBENCH [unittest's arguments]"""
 import importlib.util
 import os
 import pathlib
+import shutil
 import struct
 import subprocess
 import sys
@@ -149,6 +150,21 @@ class Results(unittest.TestCase):
         with self.assertWarnsRegex(UserWarning, "changed.h5: written to by another program"):
             changed = results.read(self.at("changed.h5"))
         self.assertEqual(changed.values["note"], "mine")
+
+    @unittest.skipUnless(shutil.which("h5repack"), "hdf5-tools is missing")
+    def test_the_old_format_is_converted_as_its_refusal_says(self):
+        with h5py.File(self.at("old.h5"), "w") as file, h5py.File(self.at("rows.h5")) as rows:
+            for name in rows:
+                rows.copy(name, file)
+            file.attrs.update(rows.attrs)
+            file["plain"], file["empty"] = np.arange(9.0), np.zeros(0)
+        with self.assertRaises(InputError) as caught:
+            results.read(self.at("old.h5"))
+        words = str(caught.exception).split("convert it: ")[1].replace("NEW.h5", str(self.at("new.h5")))
+        subprocess.run(words.split(), check=True)
+        with self.assertWarnsRegex(UserWarning, "checksums hold"):
+            new = results.read(self.at("new.h5"))
+        self.assertEqual(len(new["rows"]), 1)
 
     def test_what_is_lost_while_it_is_open_is_not_called_unwritable(self):
         self.at("lost.vtkhdf").write_bytes(self.at("still.vtkhdf").read_bytes())

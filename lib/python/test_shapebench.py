@@ -229,6 +229,10 @@ class Refusals(unittest.TestCase):
         self.refused(TypeError, "numbers are wanted", sb.Mesh, np.eye(3, dtype=complex), [[0, 1, 2]])
         self.refused(ValueError, "n x 3", sb.Mesh, np.ones(4), [[0, 1, 2]])
         self.refused(ValueError, "'gravity' has the shape (2,): 3", beam, gravity=(0, 1))
+        x, quads = np.random.default_rng(0).random((8, 3)), np.arange(24, dtype=np.int32).reshape(6, 4) % 8
+        self.refused(ValueError, "'triangles' has the shape (6, 4): n x 3", sb.Mesh, x, quads)
+        self.refused(ValueError, "'vertices' has the shape (3, 8): n x 3", sb.Mesh, x.T, quads[:, :3])
+        self.refused(ValueError, "'vertices' has masked", sb.Mesh, np.ma.masked_greater(x, 0.5), quads[:, :3])
         self.refused(ValueError, "'mass' has the shape (2,)", beam, mass=[1, 1])
 
     def test_a_file_name_is_whole(self):

@@ -6,7 +6,6 @@
 
 #include "../error.h"
 #include "../vector.h"
-#include "lanes.h"
 
 /* What is summed of every piece, with r = x - about: m r, m v, m r X v, the upper half of m r r^T,
  * and m v^2. */
@@ -61,7 +60,16 @@ void momentum_room(Momentum *m, long blocks)
     if (again) memset(m->mass, 0, slots * sizeof *m->mass);
     if (m->frame) memset(m->frame, 0, slots * sizeof *m->frame);
     m->runs = 0;
+    if (m->notes.noted) momentum_notes(m);
     momentum_forget(m);
+}
+
+void momentum_notes(Momentum *m)
+{
+    size_t blocks = (size_t)(m->abreast ? all_blocks(m) : m->bodies * m->blocks) + 1;
+    m->notes.noted = room(m->notes.noted, blocks, sizeof *m->notes.noted);
+    m->notes.before = room(m->notes.before, blocks * 6 * SM_LANES, sizeof *m->notes.before);
+    memset(m->notes.noted, 0, blocks * sizeof *m->notes.noted);
 }
 
 void momentum_frames(Momentum *m)
@@ -388,27 +396,139 @@ void momentum_begin(Momentum *m, long body, const double (*origin)[3], real *x, 
     m->begun = true;
 }
 
-void momentum_pushed(Momentum *m, long body, long slot, const double x[3], const double dv[3],
-                     const real gravity[3])
+/* A piece's sums have changed by p->sum, `n` steps after it was measured. */
+static void change_piece(MomentumPiece *p, double n, const real gravity[3])
 {
-    m->moving = true;
-    MomentumPiece *p = &m->piece[body * m->pieces + m->label[slot]];
-    double mass = (double)m->mass[slot], n = (double)m->steps, r[3], moment[3];
+    double off[2][3], velocity[2][3], moment[2][3];
     for (int d = 0; d < 3; d++) {
-        double change = mass * dv[d] / p->mass;
-        r[d] = x[d] - (p->place[d] + n * p->velocity[d] + (double)gravity[d] * n * (n + 1) / 2);
-        p->velocity[d] += change;
-        p->place[d] -= n * change; /* from where it would be here with this velocity */
+        double fall = (double)gravity[d], by = p->sum[MASS_R + d] / p->mass,
+               faster = p->sum[MASS_V + d] / p->mass;
+        velocity[0][d] = p->velocity[d] + n * fall;
+        velocity[1][d] = velocity[0][d] + faster;
+        off[0][d] = p->place[d] + n * p->velocity[d] + fall * n * (n + 1) / 2 - p->about[d];
+        off[1][d] = off[0][d] + by;
+        p->velocity[d] += faster;
+        p->place[d] += by - n * faster; /* from where it would be here with this velocity */
     }
-    sm_cross(r, dv, moment);
-    for (int d = 0; d < 3; d++) p->spin[d] += mass * moment[d];
+    for (int i = 0; i < 2; i++) sm_cross(off[i], velocity[i], moment[i]);
+    for (int d = 0; d < 3; d++)
+        p->spin[d] += p->sum[MOMENT + d] - p->mass * (moment[1][d] - moment[0][d]);
+}
+
+void momentum_pushed(Momentum *m, long body, long slot, const MomentumChange *change,
+                     const real gravity[3], long ahead)
+{
+    if (!m) return;
+    MomentumPiece *p = &m->piece[body * m->pieces + m->label[slot]];
+    double mass = (double)m->mass[slot], r[2][3], u[2][3], moment[2][3];
+    memset(p->sum, 0, sizeof p->sum);
+    for (int d = 0; d < 3; d++) {
+        m->moving |= change->dx[d] != 0 || change->dv[d] != 0;
+        p->sum[MASS_R + d] = mass * change->dx[d];
+        p->sum[MASS_V + d] = mass * change->dv[d];
+        r[0][d] = change->x[d] - p->about[d];
+        r[1][d] = r[0][d] + change->dx[d];
+        u[0][d] = change->v[d];
+        u[1][d] = u[0][d] + change->dv[d];
+    }
+    for (int i = 0; i < 2; i++) sm_cross(r[i], u[i], moment[i]);
+    for (int d = 0; d < 3; d++) p->sum[MOMENT + d] = mass * (moment[1][d] - moment[0][d]);
+    if (is_known(m, p)) change_piece(p, (double)(m->steps + ahead), gravity);
+}
+
+/* What the lanes of a block add to their pieces' sums. `from`: where those are taken about. */
+typedef double Lanes[SM_LANES];
+static void changes_of(const real *mass, bool abreast, const real *before, const real *x,
+                       const real *v, Lanes from[3], Lanes change[SPREAD])
+{
+    Lanes r[2][3], u[2][3];
+    for (int d = 0; d < 3; d++)
+        for (int l = 0, at = d * SM_LANES; l < SM_LANES; l++, at++) {
+            r[0][d][l] = (double)before[at] - from[d][l];
+            r[1][d][l] = (double)x[at] - from[d][l];
+            u[0][d][l] = (double)before[3 * SM_LANES + at];
+            u[1][d][l] = (double)v[at];
+        }
+    for (int d = 0; d < 3; d++) {
+        int e = (d + 1) % 3, f = (d + 2) % 3;
+        for (int l = 0; l < SM_LANES; l++) {
+            double m = (double)mass[abreast ? 0 : l];
+            change[MASS_R + d][l] = m * (r[1][d][l] - r[0][d][l]);
+            change[MASS_V + d][l] = m * (u[1][d][l] - u[0][d][l]);
+            change[MOMENT + d][l] = m * (r[1][e][l] * u[1][f][l] - r[1][f][l] * u[1][e][l] -
+                                         (r[0][e][l] * u[0][f][l] - r[0][f][l] * u[0][e][l]));
+        }
+    }
+}
+
+/* Adds the changes of a block of a run, whose lanes are given, in the order of slots. */
+static void add_changes(const Momentum *m, long run, long block, const Lane lane[SM_LANES],
+                        MomentumPiece *piece, const double (*origin)[3], const real *before,
+                        const real *x, const real *v)
+{
+    Lanes from[3], change[SPREAD];
+    long same = m->run[run].piece;
+    for (int l = 0; l < SM_LANES; l++) {
+        long of = same >= 0 ? same : lane[l].piece < 0 ? 0 : lane[l].piece;
+        const double *at = origin_of(origin, &lane[l]);
+        for (int d = 0; d < 3; d++) from[d][l] = piece[of].about[d] - at[d];
+    }
+    changes_of(m->mass + (m->abreast ? block % m->blocks : block * SM_LANES), m->abreast, before, x,
+               v, from, change);
+    for (int i = 0; i < SPREAD && same >= 0; i++) {
+        double sum = piece[same].sum[i];
+        for (int l = 0; l < SM_LANES; l++) sum += change[i][l];
+        piece[same].sum[i] = sum;
+    }
+    for (int l = 0; l < SM_LANES && same < 0; l++)
+        for (int i = 0; i < SPREAD && lane[l].piece >= 0; i++)
+            piece[lane[l].piece].sum[i] += change[i][l];
+}
+
+void momentum_settle(Momentum *m, long body, const double (*origin)[3], const real *x,
+                     const real *v, const real gravity[3])
+{
+    if (!m->notes.noted) return;
+    long first = m->abreast ? 0 : body * all_blocks(m), count = m->pieces;
+    if (m->abreast) count *= m->bodies;
+    MomentumPiece *piece = m->piece + (m->abreast ? 0 : body * count);
+    bool *noted, any = false;
+    Lane lane[SM_LANES];
+    for (long run = 0; run < m->runs; run++) {
+        long end = m->run[run + 1].first, block = m->run[run].first, begin = block;
+        while ((noted = memchr(m->notes.noted + first + block, true, (size_t)(end - block)))) {
+            block = noted - m->notes.noted - first;
+            for (MomentumPiece *p = piece; !any && p < piece + count; p++)
+                memset(p->sum, 0, sizeof p->sum);
+            any = m->moving = true;
+            *noted = false;
+            if (begin >= 0) lanes_of(m, begin, lane);
+            begin = -1;
+            add_changes(m, run, block, lane, piece, origin,
+                        m->notes.before + (first + block) * 6 * SM_LANES, x + block * 3 * SM_LANES,
+                        v + block * 3 * SM_LANES);
+        }
+    }
+    for (MomentumPiece *p = piece; any && p < piece + count; p++)
+        if (is_known(m, p)) change_piece(p, (double)(m->steps + 1), gravity);
+}
+
+/* How much of an expectation is taken in advance, so that in the n steps to the next time a body is
+ * too slow as long as it is too fast: else friction, which brings it to rest on the whole, would
+ * leave too little as the momentum that it should have, and it would creep. What is taken in the
+ * end is 1 + leak times the expectation, (n + 1) / 2 n of it has to be left over with the other
+ * sign. */
+static double in_advance(double n)
+{
+    double leak = (1 - LASTING) / LEARNT;
+    return leak + (1 + leak) * (n + 1) / (2 * n);
 }
 
 void momentum_keep(Momentum *m, long body, const double (*origin)[3], real *x, real *v,
                    const real gravity[3])
 {
     long count;
-    double n = (double)m->every;
+    double n = (double)m->every, ahead = in_advance(n);
     MomentumPiece *piece = measure(m, body, origin, x, v, &count);
     for (MomentumPiece *p = piece; p < piece + count; p++) {
         Momenta is;
@@ -419,8 +539,8 @@ void momentum_keep(Momentum *m, long body, const double (*origin)[3], real *x, r
             double fall = (double)gravity[d], fast;
             p->place[d] += n * p->velocity[d] + fall * n * (n + 1) / 2;
             p->velocity[d] += n * fall;
-            fast = is.velocity[d] - p->velocity[d];
-            over[d] = is.spin[d] - p->spin[d];
+            fast = is.velocity[d] - p->velocity[d] + ahead * p->drift[d];
+            over[d] = is.spin[d] - p->spin[d] + ahead * p->twist[d];
             /* what was over the last times will be again */
             p->drift[d] = LASTING * p->drift[d] + LEARNT * fast;
             p->twist[d] = LASTING * p->twist[d] + LEARNT * over[d];
@@ -462,5 +582,6 @@ long momentum_bytes(const Momentum *m)
 void momentum_free(Momentum *m)
 {
     if (!m) return;
-    sm_free_all(m->mass, m->label, m->frame, m->piece, m->run, m->sum, m);
+    sm_free_all(m->mass, m->label, m->frame, m->piece, m->run, m->sum, m->notes.noted,
+                m->notes.before, m);
 }

@@ -1,4 +1,4 @@
-/* momentum.h - free bodies keep their momenta, whatever rounding adds to them.
+/* momentum.h - bodies keep their momenta, whatever rounding adds to them.
  *
  * Shape matching conserves linear and angular momentum: the impulses m (g - x) of a region add up
  * to zero, and so do their moments. Rounded they do not quite, and since a body that moves little
@@ -9,17 +9,15 @@
  * and the distance of its centre from its parabola as a displacement. The error then stays what a
  * few steps make of it, for any number of steps.
  *
- * Pieces are measured apart, because each keeps its own momentum. Only what nothing acts on but
- * gravity is kept: whoever changes positions or velocities from outside, or has them changed by
- * handles, obstacles or contacts, says so by momentum_forget(), and begins anew.
+ * Pieces are measured apart, because each keeps its own momentum. What handles, obstacles, contacts
+ * and forces add to it is counted as they add it. Whoever sets positions or velocities says so by
+ * momentum_forget(), and begins anew.
  *
  * Lengths are cells, velocities cells per step, as inside an engine. */
 #ifndef SM_MOMENTUM_H
 #define SM_MOMENTUM_H
 
-#include <stdbool.h>
-
-#include "real.h"
+#include "lanes.h"
 
 #define Momentum        SM_NAME(SmMomentum)
 #define momentum_build  SM_NAME(sm_momentum_build)
@@ -29,6 +27,8 @@
 #define momentum_forget SM_NAME(sm_momentum_forget)
 #define momentum_begin  SM_NAME(sm_momentum_begin)
 #define momentum_pushed SM_NAME(sm_momentum_pushed)
+#define momentum_settle SM_NAME(sm_momentum_settle)
+#define momentum_notes  SM_NAME(sm_momentum_notes)
 #define momentum_keep   SM_NAME(sm_momentum_keep)
 #define momentum_shift  SM_NAME(sm_momentum_shift)
 #define momentum_bytes  SM_NAME(sm_momentum_bytes)
@@ -45,7 +45,8 @@ typedef struct {
     double shift[3], push[3], turn[3];     /* too far, too fast, turning about `about` */
     double drift[3], twist[3];             /* what rounding adds from one time to the next */
     double widest;                         /* largest trace of its spread lately */
-    double sum[MOMENTUM_SUMS];             /* of its particles, while they are measured */
+    double sum[MOMENTUM_SUMS];             /* of its particles, while they are measured; of changes
+                                            * from outside, while they are counted */
     long since;                            /* the `age` in which these were measured */
 } MomentumPiece;
 
@@ -53,6 +54,12 @@ typedef struct {
 typedef struct {
     long first, piece;
 } MomentumRun;
+
+/* Blocks that obstacles have pushed in this step. */
+typedef struct {
+    bool *noted;  /* [blocks of all bodies], or NULL: there are no obstacles */
+    real *before; /* [blocks of all bodies][6][SM_LANES] x and v before the push */
+} MomentumNotes;
 
 typedef struct {
     /* the caller's to fill in before momentum_divide(): */
@@ -67,8 +74,9 @@ typedef struct {
     long pieces, piece_room;
     MomentumPiece *piece; /* [bodies][pieces] */
     long runs;
-    MomentumRun *run;   /* [runs + 1] */
-    void *sum;          /* of the runs that are summed at once */
+    MomentumRun *run; /* [runs + 1] */
+    void *sum;        /* of the runs that are summed at once */
+    MomentumNotes notes;
     bool begun, moving; /* momenta are known; and something has moved since they were forgotten */
     long age;           /* how often momenta were forgotten, and once more */
     long every, steps;  /* steps from one measurement to the next, and since the last one */
@@ -121,10 +129,33 @@ static inline void momentum_kept(Momentum *m)
     m->steps = 0;
 }
 
-/* The velocity of a slot (abreast: particle) at x, origin included, was changed by `dv`: an
- * external force. `gravity` in cells per step and step. */
-void momentum_pushed(Momentum *m, long body, long slot, const double x[3], const double dv[3],
-                     const real gravity[3]);
+/* Something outside of the body has moved a slot (abreast: particle) at x, origin included, by dx,
+ * and its velocity v by dv. `gravity` in cells per step and step; `ahead`: steps that were taken
+ * and are not counted yet. Where momenta are not known: only that something moves; NULL: nothing.
+ */
+typedef struct {
+    double x[3], v[3], dx[3], dv[3];
+} MomentumChange;
+void momentum_pushed(Momentum *m, long body, long slot, const MomentumChange *change,
+                     const real gravity[3], long ahead);
+
+/* Room for notes, before there are obstacles. Allocates. */
+void momentum_notes(Momentum *m);
+
+/* Of a block of all bodies that an obstacle is about to push, so that x and v change. */
+SM_INLINE void momentum_note(const MomentumNotes *notes, long block, const vec x[3], const vec v[3])
+{
+    if (!notes || !notes->noted) return;
+    notes->noted[block] = true;
+    store3(notes->before + block * 6 * SM_LANES, x);
+    store3(notes->before + (block * 6 + 3) * SM_LANES, v);
+}
+
+/* Counts what was noted of a body (of all if they are abreast) in the step that is not counted yet,
+ * and that x and v are what obstacles have made of it.
+ * O(blocks), and some 60 operations a slot of those that were pushed. */
+void momentum_settle(Momentum *m, long body, const double (*origin)[3], const real *x,
+                     const real *v, const real gravity[3]);
 
 /* x of a body counts from a place farther on by `by`, which no `origin` tells. */
 void momentum_shift(Momentum *m, long body, const double by[3]);

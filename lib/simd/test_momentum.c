@@ -394,3 +394,50 @@ TEST(what_acts_from_outside_between_steps_is_kept)
         free_free(&f);
     }
 }
+
+/* A block on a plane, with and without friction, on a box, hung up by its upper side, or held there
+ * on a plane. */
+static void hold(Free *f, int kind)
+{
+    static const SmObstacle obstacle[3] = {{.kind = SM_PLANE, .b = {0, 1, 0}},
+                                           {.kind = SM_PLANE, .b = {0, 1, 0}, .friction = 0.5},
+                                           {.kind = SM_BOX, .a = {-9, -1, -9}, .b = {9, 0, 9}}};
+    long *held = sm_alloc((size_t)f->n, sizeof *held), count = 0;
+    double high = -INFINITY;
+    for (long p = 0; p < f->n; p++) high = fmax(high, f->rest[p][1]);
+    for (long p = 0; p < f->n; p++)
+        if (f->rest[p][1] > high - 0.5 * f->voxels.cell) held[count++] = p;
+    const SmHandle handle = {
+        .count = count, .particle = held, .pose = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+    SmBoundary bounds = {.handle_count = 1, .handle = &handle};
+    if (kind < 3) bounds = (SmBoundary){.obstacle_count = 1, .obstacle = &obstacle[kind]};
+    if (kind == 4) bounds.obstacle_count = 1, bounds.obstacle = obstacle;
+    f->type->bound(f->engine, &bounds);
+    free(held);
+}
+
+/* Rounding pushes a body at rest the same way in every step: it crept, ever faster. */
+TEST(what_holds_a_body_does_not_set_it_in_motion)
+{
+    unsigned seed = 31;
+    for (int trial = 0; trial < 16; trial++) {
+        Free f = {
+            .type = types[trial % 4],
+            .params = {.w = 2, .h = 0.01, .damping = 0.1, .gravity = {0, -10, 0}, .instances = 1}};
+        SmError error = {0};
+        random_block(&seed, (int[3]){6, 4, 5}, 0.1, 1, &f.voxels);
+        if (f.type->create(&f.voxels, &f.params, &f.engine, &error)) fail_msg("%s", error.text);
+        take_up(&f);
+        hold(&f, trial / 4);
+        for (int step = 0; step < 2000; step++) f.type->step(f.engine, NULL);
+        f.type->get(f.engine, SM_POSITION, f.rest);
+        for (int step = 0; step < 8000; step++) f.type->step(f.engine, NULL);
+        f.type->get(f.engine, SM_POSITION, f.x);
+        for (long p = 0; p < f.n; p++)
+            for (int d = 0; d < 3; d++)
+                if (!(fabs(f.x[p][d] - f.rest[p][d]) <= 1e-4 * f.voxels.cell))
+                    fail_msg("trial %d: particle %ld creeps %g cells along %d", trial, p,
+                             (f.x[p][d] - f.rest[p][d]) / f.voxels.cell, d);
+        free_free(&f);
+    }
+}

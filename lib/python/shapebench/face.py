@@ -149,7 +149,10 @@ def whole(value: Any, name: str, bits: int = 64) -> int:
 
 def array(value: ArrayLike, kind: Any, name: str, *shape: Optional[int]) -> NDArray[Any]:
     """`value` as the flat rows that the library wants: itself where it is so already, else a copy. None in the shape is
-    any length, also none at all: (9, 3) and (27,) both fit (None, 3)."""
+    any length, also none at all. (9, 3) and (27,) both fit (None, 3); (3, 9) and (9, 4), which are something else, do
+    not."""
+    if isinstance(value, np.ma.MaskedArray) and np.any(value.mask):
+        raise UsageError(f"'{name}' has masked values: fill or drop them")
     given = np.asarray(value)
     wanted = np.dtype(kind)
     if given.dtype.kind not in ("iu" if wanted.kind in "iu" else "biuf") and given.size:
@@ -159,9 +162,9 @@ def array(value: ArrayLike, kind: Any, name: str, *shape: Optional[int]) -> NDAr
         if int(given.min()) < fits.min or int(given.max()) > fits.max:
             raise UsageError(f"'{name}' has numbers that do not fit {wanted}")
     flat = np.ascontiguousarray(given, dtype=wanted)
-    if flat.shape == shape:
-        return flat
     try:
+        if given.ndim == len(shape) and any(length not in (None, size) for length, size in zip(shape, given.shape)):
+            raise ValueError
         return flat.reshape([-1 if length is None else length for length in shape])
     except ValueError:
         sizes = " x ".join("n" if length is None else str(length) for length in shape)

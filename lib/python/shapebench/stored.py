@@ -55,12 +55,13 @@ def checksum_holds(path, *_):
         raise Unusable(f"{path}: cannot be read: {error.strerror}") from None
     if head.startswith(OLD):
         raise Unusable(f"{path}: HDF5 without checksums, as shapebench stored it until November 2026: make it again, "
-                       f"or convert it: h5repack -L -f FLET {path} NEW.h5")
+                       f"or convert it: h5repack -m 1 -L -f FLET {path} NEW.h5")
     return holds
 
 
-def bytes_held(group, deep=0):
-    """How large the datasets in a group are. One that was never written can claim any size."""
+def bytes_held(group, unchecked, deep=0):
+    """How large the datasets in a group are. One that was never written can claim any size. Those without checksums
+    are added to `unchecked`."""
     if deep > DEEPEST:
         raise ValueError("groups lie in groups without an end")
     held = 0
@@ -68,7 +69,11 @@ def bytes_held(group, deep=0):
         if name in VIEWS:
             continue
         node = group[name]
-        held += bytes_held(node, deep + 1) if isinstance(node, h5py.Group) else (node.size or 0) * node.dtype.itemsize
+        if isinstance(node, h5py.Group):
+            held += bytes_held(node, unchecked, deep + 1)
+        elif node.size:
+            held += node.size * node.dtype.itemsize
+            unchecked += [] if node.fletcher32 else [name]
     return held
 
 
@@ -101,14 +106,19 @@ def opened(path, remark=warnings.warn):
     except OSError:
         raise Unusable(f"{path}: no such file") from None
     holds = checksum_holds(path, found.st_ino, found.st_mtime_ns, found.st_size)
+    unchecked = []
     try:
         with h5py.File(path, "r") as file:
-            if bytes_held(file) > found.st_size:
+            if bytes_held(file, unchecked) > found.st_size:
                 raise ValueError("it holds more than its size")
             yield file
     except DAMAGE as error:
         why = " ".join(str(error).split()) or type(error).__name__
+        if "lock file" in why or "already open" in why:
+            raise Unusable(f"{path}: another program has it open, or ended while it had: close it there, or type "
+                           f"h5clear -s {path}") from None
         raise Unusable(f"{path}: not an HDF5 file, or cut off ({why})" if "truncated" in why or "signature" in why else
                        f"{path}: something is missing or damaged ({why}): make it again") from None
     if not holds:
-        remark(f"{path}: written to by another program; HDF5's own checksums hold")
+        remark(f"{path}: written to by another program; "
+               + ("some of its data have no checksums" if unchecked else "HDF5's own checksums hold"))
