@@ -584,6 +584,8 @@ BenchDrift bench_drift(const BenchRunner *runner)
     leave(runner, &alone, NULL, drift.steps, mass, before, after);
     for (size_t i = 0; i < bodies; i++) {
         double n = (double)drift.steps, spread = fmax(before[i].spread, after[i].spread);
+        spread =
+            fmax(spread, 0.01 * before[i].mass); /* a point, within a tenth of a cell, turns not */
         drift.linear =
             fmax(drift.linear, change(before[i].linear, after[i].linear, n * before[i].mass));
         drift.angular =
