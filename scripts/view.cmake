@@ -1,7 +1,7 @@
 # The page's module: what bench/view exports, with all that plays a scene, for WebAssembly. Of bench/ it
-# takes no more than that, and of libraries the sources of libconfig and, for thin shells, of SuiteSparse's CHOLMOD,
-# in the folders of these names in SHAPEBENCH_VIEW. Of CHOLMOD it has what needs no BLAS: simplicial factors. Its module
-# Core is Utility from SuiteSparse 7.4 on.
+# takes no more than that, and of libraries the sources of libconfig and, where they are there, of jansson (glTF), zlib
+# (compressed meshes) and, for thin shells, SuiteSparse's CHOLMOD, in the folders of these names in SHAPEBENCH_VIEW. Of
+# CHOLMOD it has what needs no BLAS: simplicial factors. Its module Core is Utility from SuiteSparse 7.4 on.
 
 foreach(header bench/view/view.h bench/view/given.h bench/view/carried.h bench/view/inside.h bench/view/stored_bodies.h)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${header})
@@ -12,6 +12,9 @@ endforeach()
 
 include(scripts/embed.cmake) # builtin.c, papers.c
 file(GLOB libconfig CONFIGURE_DEPENDS ${SHAPEBENCH_VIEW}/libconfig/lib/*.c)
+set(json ${SHAPEBENCH_VIEW}/jansson)
+file(GLOB jansson CONFIGURE_DEPENDS ${json}/src/*.c)
+file(GLOB zlib CONFIGURE_DEPENDS ${SHAPEBENCH_VIEW}/zlib/*.c)
 set(sparse ${SHAPEBENCH_VIEW}/suitesparse)
 file(GLOB cholmod CONFIGURE_DEPENDS ${sparse}/CHOLMOD/Core/cholmod_*.c ${sparse}/CHOLMOD/Utility/cholmod_*.c
   ${sparse}/CHOLMOD/Cholesky/cholmod_*.c ${sparse}/AMD/Source/amd_*.c ${sparse}/COLAMD/Source/colamd.c
@@ -21,8 +24,17 @@ set(solver solve/solver_absent)
 if(cholmod)
   set(solver solve/solver solve/node_order)
 endif()
-set_source_files_properties(${libconfig} ${cholmod} PROPERTIES COMPILE_OPTIONS -w
-  COMPILE_DEFINITIONS "NDEBUG;NPRINT;NTIMER;NSUPERNODAL;NPARTITION;NCAMD;NMODIFY;NMATRIXOPS;NCHECK")
+set_source_files_properties(${libconfig} ${jansson} ${zlib} ${cholmod} PROPERTIES COMPILE_OPTIONS -w COMPILE_DEFINITIONS
+  "NDEBUG;HAVE_STDINT_H;NPRINT;NTIMER;NSUPERNODAL;NPARTITION;NCAMD;NMODIFY;NMATRIXOPS;NCHECK")
+if(jansson)
+  file(CONFIGURE OUTPUT CMakeFiles/jansson_private_config.h CONTENT "") # what its ./configure would say is above
+  set_property(SOURCE lib/mesh/read_gltf.c APPEND PROPERTY COMPILE_DEFINITIONS SM_JANSSON)
+endif()
+if(zlib)
+  set_property(SOURCE lib/mesh/reader.c APPEND PROPERTY COMPILE_DEFINITIONS SM_ZLIB)
+endif()
+set_property(SOURCE lib/mesh/import.c APPEND PROPERTY COMPILE_OPTIONS "-Drealpath(path,room)=NULL") # there are no files
+target_include_directories(shapebench_objects SYSTEM PRIVATE ${json}/src ${json}/android ${SHAPEBENCH_VIEW}/zlib)
 
 sources_of(view_sources bench/view/*.c)
 list(FILTER view_sources EXCLUDE REGEX "/store_body\\.c$")
@@ -44,9 +56,10 @@ foreach(noun engine elastic_absent shell_engine stored body/body body/covers bod
   list(APPEND view_sources reference/meshless/${noun}.c)
 endforeach()
 
-add_executable(view ${view_sources} ${libconfig} ${cholmod} ${frame_objects})
-target_include_directories(view SYSTEM PRIVATE ${SHAPEBENCH_VIEW}/libconfig/lib ${sparse}/CHOLMOD/Include
-  ${sparse}/SuiteSparse_config ${sparse}/AMD/Include ${sparse}/COLAMD/Include)
+add_executable(view ${view_sources} ${libconfig} ${jansson} ${zlib} ${cholmod} ${frame_objects})
+target_include_directories(view SYSTEM PRIVATE ${SHAPEBENCH_VIEW}/libconfig/lib ${json}/src ${json}/android
+  ${CMAKE_BINARY_DIR}/CMakeFiles ${sparse}/CHOLMOD/Include ${sparse}/SuiteSparse_config
+  ${sparse}/AMD/Include ${sparse}/COLAMD/Include)
 target_compile_options(view PRIVATE -ffp-contract=off)
 target_link_libraries(view PRIVATE shapebench_flags shapebench_lib)
 target_link_options(view PRIVATE -mexec-model=reactor -Wl,-z,stack-size=8388608 ${exports})

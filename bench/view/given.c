@@ -1,21 +1,27 @@
 #include "given.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../lib/mesh/polygon.h"
+#include "../../lib/mesh/reader.h"
 #include "../scene/body.h"
 
-static const double most_cut = 5e8; /* about three seconds of cutting polygons in a browser */
+static const long most_triangles = 1000000; /* the page draws each of them on both sides */
+
+typedef struct {
+    char *name;
+    unsigned char *bytes;
+    size_t size;
+} GivenFile;
 
 static struct {
-    long vertices, polygons, corners; /* in the room */
-    double (*point)[3];
-    int *size, *corner;
+    GivenFile *file;
+    long files, room;
     char name[BENCH_PATH]; /* of the mesh; one without triangles: none is given */
     SmMesh mesh;
-    char scene[2 * BENCH_PATH];
+    char left_out[2 * BENCH_PATH], scene[2 * BENCH_PATH];
     SmError error;
 } given;
 
@@ -25,105 +31,95 @@ static struct {
     SmMesh mesh;
 } made;
 
-static void leave_room(void)
+static const char *base_name(const char *path)
 {
-    sm_free_all(given.point, given.size, given.corner);
-    given.point = NULL;
-    given.size = given.corner = NULL;
-    given.vertices = given.polygons = given.corners = 0;
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
 }
 
-void view_given_room(int vertices, int polygons, int corners)
+int view_given_readable(const char *name)
 {
-    leave_room();
-    sm_mesh_free(&given.mesh);
-    given.vertices = vertices;
-    given.polygons = polygons;
-    given.corners = corners;
-    given.point = sm_alloc((size_t)vertices, sizeof *given.point);
-    given.size = sm_alloc((size_t)polygons, sizeof *given.size);
-    given.corner = sm_alloc((size_t)corners, sizeof *given.corner);
+    return sm_mesh_readable(name);
 }
 
-double *view_given_points(void)
+unsigned char *view_given_room(const char *name, int bytes)
 {
-    return given.point[0];
+    size_t size = (size_t)bytes;
+    sm_make_room(given.file, given.room, given.files + 1);
+    GivenFile *file = &given.file[given.files++];
+    *file = (GivenFile){sm_copy(name, strlen(name) + 1, 1), sm_alloc(size, 1), size};
+    return file->bytes;
 }
 
-int *view_given_sizes(void)
+static const GivenFile *find_file(const char *name)
 {
-    return given.size;
+    for (long f = 0; f < given.files; f++)
+        if (!strcmp(given.file[f].name, name)) return &given.file[f];
+    return NULL;
 }
 
-int *view_given_corners(void)
+/* SmMeshBeside of the files that were given with the mesh, in whatever folder below the mesh's. */
+static bool copy_file(void *of, const char *name, unsigned char **bytes, size_t *size)
 {
-    return given.corner;
+    (void)of;
+    const GivenFile *file = find_file(base_name(name));
+    bool below = *name != '/' && !strstr(name, "..") && !strstr(name, "//");
+    if (!file || !below) return false;
+    *bytes = sm_copy(file->bytes, file->size, 1);
+    *size = file->size;
+    return true;
 }
 
-/* How many triangles the polygons make. */
-static SmCode count_triangles(long *triangles, SmError *error)
+static SmCode read_mesh(const char *name)
 {
-    long corners = 0;
-    double cost = 0;
-    *triangles = 0;
-    for (long p = 0; p < given.polygons; p++) {
-        long size = given.size[p];
-        if (size < 0 || size > given.corners - corners)
-            return sm_fail(error, SM_INPUT, "%s: its polygons have more corners than were read",
-                           given.name);
-        corners += size;
-        if (size > 2) *triangles += size - 2;
-        if (size > 3) cost += (double)size * (double)size;
+    char text[SM_LEFT_OUT_TEXT];
+    SmMeshLeftOut left_out = {0};
+    const GivenFile *given_file = find_file(name);
+    assert(given_file);
+    SmMeshFile file = {
+        .name = name, .bytes = given_file->bytes, .size = given_file->size, .beside = copy_file};
+    SmCode code = sm_mesh_read(&file, &given.mesh, &left_out, &given.error);
+    if (code) return code;
+    if (given.mesh.triangle_count > most_triangles) {
+        code = sm_fail(&given.error, SM_INPUT,
+                       "%s: %ld triangles; the page takes at most %ld: simplify the mesh", name,
+                       given.mesh.triangle_count, most_triangles);
+        sm_mesh_free(&given.mesh);
+        return code;
     }
-    if (cost <= most_cut) return SM_OK;
-    return sm_fail(error, SM_INPUT,
-                   "%s: its polygons have more corners than a page can cut: export it as triangles",
-                   given.name);
-}
-
-/* Cuts a polygon; one with a corner that is not there into triangles without any, which are refused
- * later. */
-static void cut(const int *corner, int size, int (*triangle)[3])
-{
-    bool sound = true;
-    for (int c = 0; c < size; c++) sound &= corner[c] >= 0 && corner[c] < given.vertices;
-    if (sound && size > 3) {
-        sm_polygon_cut((const double(*)[3])given.point, corner, size, triangle);
-        return;
-    }
-    for (int t = 0; t < size - 2; t++)
-        for (int c = 0; c < 3; c++) triangle[t][c] = sound ? corner[c] : -1;
-}
-
-static void make_triangles(void)
-{
-    const int *corner = given.corner;
-    int(*triangle)[3] = given.mesh.triangle;
-    memcpy(given.mesh.position, given.point, (size_t)given.vertices * sizeof *given.point);
-    for (long p = 0; p < given.polygons; p++) {
-        int size = given.size[p];
-        if (size > 2) {
-            cut(corner, size, triangle);
-            triangle += size - 2;
-        }
-        corner += size;
-    }
+    if (sm_mesh_left_out(&left_out, text)[0])
+        snprintf(given.left_out, sizeof given.left_out, "%s: left out: %s", name, text);
+    return SM_OK;
 }
 
 const char *view_given_take(const char *name)
 {
-    long triangles;
     snprintf(given.name, sizeof given.name, "%s", name);
     sm_mesh_free(&given.mesh);
-    SmCode code = count_triangles(&triangles, &given.error);
-    if (!code) {
-        given.mesh = sm_mesh_new(given.vertices, triangles);
-        make_triangles();
-    }
-    if (!code) code = sm_mesh_prepare(&given.mesh, given.name, &given.error);
-    if (code) sm_mesh_free(&given.mesh);
-    leave_room();
+    given.left_out[0] = '\0';
+    SmCode code = read_mesh(name);
+    for (long f = 0; f < given.files; f++) sm_free_all(given.file[f].name, given.file[f].bytes);
+    given.files = 0;
     return code ? given.error.text : "";
+}
+
+const char *view_given_left_out(void)
+{
+    return given.left_out;
+}
+
+const double *view_given_facts(void)
+{
+    static double facts[15];
+    SmMeshInfo info = sm_mesh_info(&given.mesh);
+    const long counts[] = {info.triangles,  info.vertices,          info.components,
+                           info.open_edges, info.nonmanifold_edges, info.flipped_edges,
+                           info.degenerate, info.duplicates};
+    for (int i = 0; i < 8; i++) facts[i] = (double)counts[i];
+    memcpy(facts + 8, info.low, sizeof info.low);
+    memcpy(facts + 11, info.high, sizeof info.high);
+    facts[14] = info.volume;
+    return facts;
 }
 
 /* A vector as a scene file has it: of reals. */
@@ -178,7 +174,7 @@ SmCode view_given_load(const char *mesh, SmMesh *result, SmError *error)
 {
     *result = (SmMesh){0};
     if (!strncmp(mesh, "shape:", 6)) return load_shape(mesh, result, error);
-    const char *slash = strrchr(mesh, '/'), *name = slash ? slash + 1 : mesh;
+    const char *name = base_name(mesh);
     if (!given.mesh.triangle_count || strcmp(name, given.name))
         return sm_fail(error, SM_INPUT,
                        "the scene's mesh '%s' is not in this page: drop that file on it, and the "

@@ -1,24 +1,29 @@
-/* given.h - a mesh that the page has read from a file, for the scene that it opens next.
+/* given.h - a mesh file that is given to the page, for the scene that it opens next.
  *
- * Assimp is not in WebAssembly: the page reads files itself (scripts/view/mesh_files.js) and hands
- * over plain polygons. Of them becomes what sm_import() would make. */
+ * The page hands over bytes; lib/mesh/reader.h reads them, as in the program: the same bytes give
+ * the same mesh, or the same line of error. */
 #ifndef BENCH_GIVEN_H
 #define BENCH_GIVEN_H
 
 #include "../../lib/mesh/mesh.h"
 
-/* Lets go of the mesh that was given before, and makes room of zeros for a new one, whose sizes are
- * at least 0. The page fills it through the pointers that follow, which hold until it is taken.
- * Without memory the module ends. */
-void view_given_room(int vertices, int polygons, int corners);
-double *view_given_points(void); /* [vertices][3], the file's unit */
-int *view_given_sizes(void);     /* [polygons]: how many corners each has; of two or less: none */
-int *view_given_corners(void);   /* [corners]: vertices, a polygon's after those of another */
+/* Whether the page can read a file of this name: 1 or 0. */
+int view_given_readable(const char *name);
 
-/* Makes the mesh file `name`, without a folder, of what is in that room: "", or the line that says
- * what is wrong with it, and then none is given. O(vertices + triangles), and the square of a
- * polygon's corners. */
+/* Returns zeroed memory for `bytes` of the file `name`, without a folder, which the page fills
+ * before it calls view_given_take(). Without memory the module ends. */
+unsigned char *view_given_room(const char *name, int bytes);
+
+/* Reads the mesh file `name` from that memory, with the other files there beside it, and frees
+ * them all. Returns "", or the line of error; no mesh is given then. */
 const char *view_given_take(const char *name);
+
+/* Returns "", or the line that says what of the file is not in the mesh. */
+const char *view_given_left_out(void);
+
+/* What is known of that mesh: triangles, vertices, components, open, non-manifold and flipped
+ * edges, triangles without area, duplicates, low and high corner of its box, volume: [15]. */
+const double *view_given_facts(void);
 
 /* The text of the scene file that drops that mesh on the ground, as `shapebench run NAME` does
  * (bench_scene_drop()); "" where none is given. */

@@ -15,9 +15,11 @@ import os
 import pathlib
 import re
 import sys
+import urllib.parse
 
 HERE = pathlib.Path(__file__).resolve().parent
-LICENCES = ('libconfig/COPYING.LIB', 'suitesparse/AMD/Doc/License.txt', 'suitesparse/COLAMD/Doc/License.txt')
+LICENCES = ('libconfig/COPYING.LIB', 'jansson/LICENSE', 'zlib/LICENSE',
+            'suitesparse/AMD/Doc/License.txt', 'suitesparse/COLAMD/Doc/License.txt')
 
 
 def encode(data):
@@ -62,7 +64,11 @@ def read(path, how):
 
 
 def read_mesh(path):
-    return {'name': path.name, 'gzip': pack(path.read_bytes())}
+    """The mesh's file and, of a glTF, the files of its buffers in the same folder."""
+    text = path.read_text(encoding='utf-8') if path.suffix.lower() == '.gltf' else ''
+    named = {path.parent / urllib.parse.unquote(name) for name in re.findall(r'"uri"\s*:\s*"([^":]+\.bin)"', text)}
+    beside = [file for file in sorted(named) if path.parent.resolve() in file.resolve().parents and file.is_file()]
+    return [{'name': file.name, 'gzip': pack(file.read_bytes())} for file in (path, *beside)]
 
 
 def read_body(path):
@@ -74,7 +80,7 @@ def main(arguments):
         sys.exit(__doc__)
     wasm, out = pathlib.Path(arguments[0]), pathlib.Path(arguments[1])
     scene = read(arguments[2], lambda path: path.read_text(encoding='utf-8'))
-    mesh = read(arguments[3], read_mesh)
+    mesh = read(arguments[3], read_mesh) or []
     bodies = [read(path, read_body) for path in arguments[4:]]
     texts = [HERE.parents[1] / 'LICENSE', *filter(pathlib.Path.exists, (wasm.parent / name for name in LICENCES))]
     licences = [read(path, lambda at: at.read_text(encoding='utf-8').strip()) for path in texts]

@@ -1,8 +1,9 @@
-// files.js - files that are dropped on the page or chosen there: meshes and scenes.
-import { isMeshFile, LARGEST, plainName, readMesh } from 'view/mesh_files';
+// files.js - files that are dropped on the page or chosen there: meshes, what lies beside them, and scenes.
+import { plainName } from 'view/given';
 
 const $ = (id) => document.getElementById(id);
-const UNKNOWN = 'a page opens meshes (.obj, .ply, .stl, .off) and scenes (.cfg): export it as one';
+const LARGEST = 400e6; // bytes, as text of a million triangles at most
+const UNKNOWN = 'the page cannot open it; it opens OBJ, PLY, STL, OFF, glTF and GLB meshes, and scenes (.cfg)';
 const isScene = (name) => /\.cfg$/i.test(name);
 const hasFiles = (event) => event.dataTransfer?.types.includes('Files');
 
@@ -39,27 +40,37 @@ export class Files {
     async open(files) {
         const { given } = this.app.engine;
         const before = given.meshes;
-        let [text, name, refused] = ['', '', ''];
+        const [meshes, others] = [[], []];
+        let [text, name, said] = ['', '', ''];
         for (const file of files) {
             try {
                 const bytes = await this.read(file);
+                const to = given.readable(file.name) ? meshes : others;
                 if (isScene(file.name)) text = new TextDecoder().decode(bytes);
-                else name = this.take(file.name, bytes);
+                else to.push({ name: plainName(file.name), bytes });
             } catch (error) {
-                refused = `${plainName(file.name)}: ${error.message}`;
+                said = `${plainName(file.name)}: ${error.message}`;
             }
         }
-        if (!text && !name) return this.app.say(refused);
+        if (others.length && !meshes.length) said = `${others[0].name}: ${UNKNOWN}`;
+        for (const mesh of meshes) {
+            const refused = await this.take([mesh, ...others]);
+            if (refused) said = refused;
+            else ({ name } = mesh);
+        }
+        if (!text && !name) return this.app.say(said);
         const why = await this.show(text, name).catch((error) => error.message);
         if (why) given.meshes = before;
-        return this.app.say(why || refused); // what comes beside a mesh, such as its materials, is not used
+        return this.app.say(why || said || (name && given.leftOut()));
     }
 
-    // Keeps the mesh of a file's bytes, and returns its name in a scene's text. Throws what is wrong with it.
-    take(file, bytes) {
-        const name = plainName(file);
-        this.app.engine.given.keep(name, readMesh(file, bytes));
-        return name;
+    // Keeps the mesh of these files (Given.take()): '', or why not.
+    async take(files) {
+        try {
+            return this.app.engine.given.take(files);
+        } catch (trap) {
+            return `${files[0].name}: ${await this.app.recover(trap)}`;
+        }
     }
 
     // Opens a scene's text, or, of '', that which waits for the mesh of that name, or else drops the mesh.
@@ -78,7 +89,6 @@ export class Files {
 
     // The file's bytes.
     async read(file) {
-        if (!isScene(file.name) && !isMeshFile(file.name)) throw new Error(UNKNOWN);
         if (file.size > LARGEST)
             throw new Error(`is larger than the ${LARGEST / 1e6} MB that a page takes: simplify it`);
         this.app.say(`Reading ${plainName(file.name)} …`);

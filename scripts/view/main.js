@@ -2,6 +2,7 @@
 import { App } from 'view/app';
 import { ABSENT, ELASTIC, Engine } from 'view/engine';
 import { Files } from 'view/files';
+import { plainName } from 'view/given';
 import { getString } from 'view/scene_text';
 import { fromBase64, saveFile, unzip } from 'view/share';
 
@@ -43,12 +44,11 @@ function wire(app) {
 // The link's scene, else the page's own, or that which drops its mesh, else the first; what was refused is
 // said. The page's mesh may be the link's, too.
 async function openFirst(app, { scene, mesh }) {
-    let [name, refused] = ['', app.engine.lacking];
-    try {
-        if (mesh) name = app.files.take(mesh.name, await unzip(fromBase64(mesh.gzip), 'gzip'));
-    } catch (error) {
-        refused = `${mesh.name}: ${error.message}`;
-    }
+    const files = await Promise.all(mesh.map(async ({ name, gzip }) => (
+        { name: plainName(name), bytes: await unzip(fromBase64(gzip), 'gzip') })));
+    const unread = files.length ? await app.files.take(files) : '';
+    const name = files.length && !unread ? files[0].name : '';
+    let refused = unread || app.engine.lacking;
     const ways = [() => app.openLink(), () => app.visit(app.engine.sceneText(FIRST_SCENE))];
     if (scene || name) ways.splice(1, 0, () => app.files.show(scene, name));
     for (const open of ways) {
@@ -56,7 +56,7 @@ async function openFirst(app, { scene, mesh }) {
         refused ||= why;
         if (why === '') break;
     }
-    app.say(refused);
+    app.say(refused || (name && app.engine.given.leftOut()));
 }
 
 async function start() {

@@ -21,6 +21,7 @@ for needed, package in (("wasm-ld", "lld"), ("llvm-ar", "llvm"), ("clang", "clan
         print(f"skipped: install {package}")
         sys.exit(77)
 HERE = pathlib.Path(__file__).resolve().parent
+sys.path.append(str(HERE.parents[1] / "lib" / "mesh"))  # corpus of mesh files
 PROGRAM = pathlib.Path(sys.argv[1]).resolve()
 SIDES = ("fastlsm", "octree")
 

@@ -167,8 +167,8 @@ class Shell(PageCase):
 
     def drop(self, name, text):
         refused = self.ask("""
-            const { files } = shapebench, bytes = new TextEncoder().encode(values[1]);
-            return files.show('', files.take(values[0], bytes));""", name, text)
+            const { files } = shapebench, [name, text] = values;
+            return await files.take([{ name, bytes: new TextEncoder().encode(text) }]) || files.show('', name);""", name, text)
         self.assertFalse(refused)
         self.ask("shapebench.pause()")
 
