@@ -46,5 +46,5 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${CMAKE_BINARY_DIR}/package/shlibs ${CMAK
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS # report, plots
   "python3, python3-numpy, python3-h5py, python3-matplotlib, python3-jinja2")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "gcc, pkg-config, cmake, libassimp-dev, libgsl-dev, libarpack2-dev, \
-libsuitesparse-dev, liblapack-dev, valgrind, ffmpeg, openmpi-bin") # the -dev ones for the static library
+libsuitesparse-dev, liblapack-dev, ffmpeg, openmpi-bin") # the -dev ones for the static library
 include(CPack)

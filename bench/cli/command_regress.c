@@ -9,7 +9,7 @@
 
 #include "../../lib/system/clock.h"
 #include "../measure/measure.h"
-#include "../regress/callgrind.h"
+#include "../regress/ab_runner.h"
 #include "../regress/regression.h"
 #include "../regress/revision.h"
 #include "../scene/scene.h"
@@ -73,9 +73,9 @@ static const BenchSetting settings[] = {
                   "Judge times, or the cycles of a step, which other work on the machine hardly "
                   "touches, where info says that they can be read (default: time)"),
      BENCH_IN(Options, by), BENCH_ONE_OF("time", "cycles")},
-    {BENCH_OPTION("counters", NULL, 2,
-                  "Also compare what was counted in a step: cycles, instructions, misses; where "
-                  "that cannot be read, with --revision, instructions by Valgrind"),
+    {BENCH_OPTION(
+         "counters", NULL, 2,
+         "Also compare what the processor counted in a step: cycles, instructions, misses"),
      BENCH_IN(Options, counters)},
     {BENCH_OPTION("counts", NULL, 2, "The same"), BENCH_IN(Options, counters)},
     {BENCH_OPTION("format", "FORMAT", 3, "text, markdown or json (default: text)"),
@@ -360,26 +360,18 @@ static bool counted(const Session *session)
     return true;
 }
 
-/* The rows have them, or Valgrind must count instructions. */
-static SmCode take_counters(Session *session, const BenchAbRunner *rounds, SmError *error)
+/* Shows counters, or says why there are none. */
+static void show_counters(Session *session)
 {
     BenchRegression *found = &session->found;
-    SmError why;
-    found->counter = "perf_event";
-    if (counted(session)) return SM_OK;
-    if (!session->options->revision) {
+    char why[160];
+    found->counters = true;
+    if (counted(session)) return;
+    if (!found->stored[0] && !bench_counters_there(sizeof why, why))
+        bench_regression_remark(found, "no counters can be read here: %s", why);
+    else
         bench_regression_remark(found, "no counters: %s or %s has none", found->baseline,
                                 found->stored[0] ? found->stored : "this build");
-        return SM_OK;
-    }
-    found->counter = "callgrind";
-    if (!strcmp(found->machine[BENCH_NEW].isa, "avx512"))
-        bench_regression_remark(found, "instructions are of other kernels than avx512's, which "
-                                       "Valgrind does not know");
-    if (bench_callgrind_count(rounds, &session->all, &why) == SM_OK) return SM_OK;
-    if (bench_process_caught()) return sm_fail(error, why.code, "%s", why.text);
-    bench_regression_remark(found, "no instructions: %s", why.text);
-    return SM_OK;
 }
 
 static SmCode measure(Session *session, SmError *error)
@@ -401,9 +393,9 @@ static SmCode measure(Session *session, SmError *error)
                       : bench_ab_run(&rounds, &session->all, found->machine, error);
     if (code) return code;
     add_stored(session);
-    if (options->counters) code = take_counters(session, &rounds, error);
+    if (options->counters) show_counters(session);
     bench_ab_finish(&session->all);
-    return code;
+    return SM_OK;
 }
 
 static void print_found(FILE *file, const void *what)

@@ -6,8 +6,8 @@
 #include "../system/machine.h"
 
 /* To standard output, as text or as JSON: {"environment": {...}, "isas": [{"name", "there",
- * "in_use"}], "processors", "affinity", "quota", "openmp", "openmp_library", "valgrind"}; what is
- * not there is null. */
+ * "in_use"}], "processors", "affinity", "quota", "openmp", "openmp_library"}; what is not there
+ * is null. */
 void bench_machine_info(const BenchMachine *machine, bool json);
 
 #endif

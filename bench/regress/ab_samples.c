@@ -29,9 +29,8 @@ bool bench_side_has(const BenchSide *side, int value)
 double bench_side_counter(const BenchSide *side, BenchCounter counter)
 {
     int value = BENCH_TIMES + (int)counter;
-    if (bench_side_has(side, value))
-        return bench_quantile(side->value[value], side->count, BENCH_LOW);
-    return counter == BENCH_INSTRUCTIONS ? side->instructions : NAN;
+    if (!bench_side_has(side, value)) return NAN;
+    return bench_quantile(side->value[value], side->count, BENCH_LOW);
 }
 
 /* Old files may not say. */
@@ -52,8 +51,7 @@ BenchAbScene *bench_ab_scene(BenchAbSamples *all, const BenchRow *row)
     if (!samples) {
         all->scenes = sm_realloc(all->scenes, (size_t)all->count + 1, sizeof *all->scenes);
         samples = &all->scenes[all->count++];
-        *samples = (BenchAbScene){
-            .side = {{.valid = true, .instructions = NAN}, {.valid = true, .instructions = NAN}}};
+        *samples = (BenchAbScene){.side = {{.valid = true}, {.valid = true}}};
         snprintf(samples->scene, sizeof samples->scene, "%s", row->scene);
     }
     if (!*samples->engine) memcpy(samples->engine, row->engine, sizeof samples->engine);

@@ -26,9 +26,8 @@ typedef struct {
     double *value[BENCH_VALUES]; /* [count] s or counts a step; NaN or 0: the build has no such */
     double *block[BENCH_VALUES]; /* [blocks] every repeat of every process, likewise */
     int blocks;
-    bool valid;          /* all its processes' checks passed */
-    char reason[224];    /* why not valid, or why not measured */
-    double instructions; /* a step, by Valgrind; NaN: not counted */
+    bool valid;       /* all its processes' checks passed */
+    char reason[224]; /* why not valid, or why not measured */
 } BenchSide;
 
 /* One with one engine in one precision. */
@@ -44,8 +43,7 @@ const char *bench_value_name(const BenchAbScene *samples, int value);
 /* Does the build have this value: finite and above 0 in every process? */
 bool bench_side_has(const BenchSide *side, int value);
 
-/* The lower quartile over processes of what was counted a step; instructions else by Valgrind; NaN:
- * not counted. */
+/* The lower quartile over processes of what was counted a step; NaN: not counted. */
 double bench_side_counter(const BenchSide *side, BenchCounter counter);
 
 /* Of all scenes. Begins zeroed. */

@@ -134,7 +134,7 @@ static double counter_ratio(const BenchComparison *one, BenchCounter counter)
 
 static bool has_counter(const BenchRegression *found, BenchCounter counter)
 {
-    for (int i = 0; i < found->count && found->counter; i++)
+    for (int i = 0; i < found->count && found->counters; i++)
         if (isfinite(counter_ratio(&found->list[i], counter))) return true;
     return false;
 }
@@ -293,17 +293,17 @@ static void write_json(FILE *file, const BenchRegression *found)
         json_array_append_new(list, comparison_json(&found->list[i]));
     for (int i = 0; i < found->remarks; i++)
         json_array_append_new(remarks, bench_json_text(found->remark[i]));
-    bench_json_write(
-        file, json_pack("{s:i, s:o, s:i, s:o, s:o, s:b, s:i, s:o, s:s?, s:o, s:o, s:{s:o, s:o}}",
-                        "schema", 1, "verdict", bench_json_text(line), "exit_code",
-                        bench_comparisons_exit(found->list, found->count), "baseline",
-                        bench_json_text(found->baseline), "stored",
-                        found->stored[0] ? bench_json_text(found->stored) : json_null(),
-                        "interleaved", (int)found->params->interleaved, "rounds",
-                        found->params->rounds, "seconds", bench_json_number(found->seconds),
-                        "counter", found->counter, "comparisons", list, "remarks", remarks,
-                        "environments", "old", bench_json_machine(&found->machine[BENCH_OLD]),
-                        "new", bench_json_machine(&found->machine[BENCH_NEW])));
+    bench_json_write(file,
+                     json_pack("{s:i, s:o, s:i, s:o, s:o, s:b, s:i, s:o, s:o, s:o, s:{s:o, s:o}}",
+                               "schema", 1, "verdict", bench_json_text(line), "exit_code",
+                               bench_comparisons_exit(found->list, found->count), "baseline",
+                               bench_json_text(found->baseline), "stored",
+                               found->stored[0] ? bench_json_text(found->stored) : json_null(),
+                               "interleaved", (int)found->params->interleaved, "rounds",
+                               found->params->rounds, "seconds", bench_json_number(found->seconds),
+                               "comparisons", list, "remarks", remarks, "environments", "old",
+                               bench_json_machine(&found->machine[BENCH_OLD]), "new",
+                               bench_json_machine(&found->machine[BENCH_NEW])));
 }
 
 void bench_regression_write(FILE *file, BenchRegressionFormat format, const BenchRegression *found)

@@ -14,10 +14,10 @@ typedef struct {
     int count;
     const BenchCompareParams *params;
     BenchMachine machine[BENCH_BUILDS];
-    char baseline[256];  /* "FILE.h5", "revision NAME (COMMIT)" */
-    char stored[256];    /* the file that is the new build; empty: it was measured */
-    const char *counter; /* who counted, "perf_event" or "callgrind"; NULL: none are shown */
-    double seconds;      /* that it took */
+    char baseline[256]; /* "FILE.h5", "revision NAME (COMMIT)" */
+    char stored[256];   /* the file that is the new build; empty: it was measured */
+    bool counters;      /* show them, too */
+    double seconds;     /* that it took */
     char remark[BENCH_REMARKS][BENCH_REMARK];
     int remarks;
 } BenchRegression;
