@@ -16,11 +16,17 @@
 #include "system/process.h"
 #include "system/suggest.h"
 
-static const BenchCommand *const commands[] = {
-    &bench_command_tables,    &bench_command_claims,  &bench_command_sweep,
-    &bench_command_calibrate, &bench_command_regress, &bench_command_history,
-    &bench_command_report,    &bench_command_kernels, &bench_command_simulate,
-    &bench_command_info,      &bench_command_scenes,  NULL};
+static const BenchCommand *const commands[] = {&bench_command_tables,
+                                               &bench_command_claims,
+                                               &bench_command_sweep,
+                                               &bench_command_calibrate,
+                                               &bench_command_regress,
+                                               &bench_command_report,
+                                               &bench_command_kernels,
+                                               &bench_command_simulate,
+                                               &bench_command_info,
+                                               &bench_command_scenes,
+                                               NULL};
 enum { COMMANDS = sizeof commands / sizeof commands[0] - 1 };
 
 static const char help_start[] =

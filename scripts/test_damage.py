@@ -43,7 +43,7 @@ MADE = {  # file: what makes it
 }
 COPIED = {"baselines.h5": "results/published/baselines.h5"}  # whose making needs Bullet, and minutes
 READ = {  # file: what reads it; @ is the file, ! a new name
-    "rows.h5": [["PROGRAM", "regress", "--baseline", "@", "--scene", "nothing"], ["PROGRAM", "history", "@", "@"],
+    "rows.h5": [["PROGRAM", "regress", "--baseline", "@", "--scene", "nothing"],
                 ["PROGRAM", "report", "-o", "!.html", "@"]],
     "sweep.h5": [["PROGRAM", "sweep", "@"], ["PROGRAM", "report", "-o", "!.html", "@"],
                  ["plot_sweep.py", "@", "-o", "!.svg"]],

@@ -46,7 +46,8 @@ static const char help[] =
     "claims with verdicts, figures with their data, scenes to be pulled by hand, and where it "
     "was measured.\v"
     "FILE is what tables, claims, sweep and calibrate write with -o. The page needs no network. "
-    "Files of the same scenes from several commits make a history.\n" BENCH_EXIT_CODES;
+    "Files of the same scenes from several commits make a history: what a step took in each, and, "
+    "in ten files of a scene or more, from which on it is slower or faster.\n" BENCH_EXIT_CODES;
 
 /* Becomes the script. */
 static SmCode perform(void *record, int argc, char **argv, SmError *error)

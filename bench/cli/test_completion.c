@@ -39,7 +39,7 @@ TEST(commands_and_their_options_are_those_of_the_help)
 {
     Result commands, help, options;
     complete("''", &commands);
-    assert_int_equal(lines_of(&commands), 12);
+    assert_int_equal(lines_of(&commands), 11);
     for (char *name = strtok(commands.out, "\n"), *next; name; name = next) {
         next = strtok(NULL, "\n");
         char words[160];

@@ -32,7 +32,10 @@ static int values(const BenchCompareParams *params)
     return params->by_cycles ? 1 : BENCH_TIMES;
 }
 
-bool bench_same_work(const BenchRow *a, const BenchRow *b, bool any_isa, size_t size, char *reason)
+/* Are they of the same work: engine, precision, instruction set unless it may be any, mesh,
+ * particles, w and so on? If not, what differs, and both. What an old file does not state
+ * (row_store.h) is not judged. */
+static bool same_work(const BenchRow *a, const BenchRow *b, bool any_isa, size_t size, char *reason)
 {
     const struct {
         const char *what;
@@ -92,8 +95,8 @@ static bool comparable(BenchComparison *result, const BenchCompareParams *params
                  side[missing].reason);
         return false;
     }
-    return bench_same_work(&side[BENCH_OLD].row, &side[BENCH_NEW].row, params->any_isa,
-                           sizeof result->reason, result->reason);
+    return same_work(&side[BENCH_OLD].row, &side[BENCH_NEW].row, params->any_isa,
+                     sizeof result->reason, result->reason);
 }
 
 static BenchTimes times_of(const BenchSide *side, int value)

@@ -61,11 +61,6 @@ typedef struct {
     char reason[256]; /* of INVALID and no baseline */
 } BenchComparison;
 
-/* Are they of the same work: engine, precision, instruction set unless it may be any, mesh,
- * particles, w and so on? If not, what differs, and both. What an old file does not state
- * (row_store.h) is not judged. */
-bool bench_same_work(const BenchRow *a, const BenchRow *b, bool any_isa, size_t size, char *reason);
-
 /* What is shown of 1 s, or of 1 count. */
 static inline double bench_value_unit(int value)
 {

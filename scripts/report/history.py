@@ -1,9 +1,12 @@
-"""A scene's cost from file to file, and two files side by side. What changed, and what is slower, the program says
-(`shapebench history`, `regress`): nothing is judged here."""
+"""A scene's cost from file to file, where it and the machine changed, and two files side by side, as `regress` compares
+them."""
+import collections
 import json
+import math
 import subprocess
 import textwrap
 
+import change_point
 from drawing import COLOURS, MARKS, PAPER, Figure, canvas, number
 from stored import Unusable
 from tables import Table
@@ -11,32 +14,62 @@ from tables import Table
 FEW = 4  # files that are all shown in full
 MOST_NAMES = 24  # under the axis
 SHORT = {"processor": "CPU", "instruction set": "ISA"}
+WORK = "scene engine precision threads particles w epsilon h input_hash".split()  # as bench/regress/comparison.c has it
+MACHINE = {"cpu": "processor", "cpu_model": "processor", "compiler": "compiler", "libraries": "libraries",
+           "kernel": "kernel", "governor": "governor", "hostname": "host", "isa": "instruction set"}
 
 
-def ask(program, *words):
-    """What the program answers in JSON. Its exit code is a verdict where it answers."""
-    done = subprocess.run([program, *words], capture_output=True, text=True)
-    if not done.stdout:
-        raise Unusable(done.stderr.strip().split(": ", 1)[-1] or f"{program} {words[0]} ended with {done.returncode}")
-    return json.loads(done.stdout)
+def timed(source):
+    """Rows that are neither INVALID nor BUSY, which have no time."""
+    return [row for row in source.rows if row["valid"] and 0 < row["total_ms"] < math.inf]
 
 
-def read(program, sources):
-    """The history of all files that have rows; None where no scene is in two of them."""
-    scenes = {}
-    for source in sources:
-        for row in source.rows:
-            if row["valid"] and row["total_ms"] > 0:
-                scenes.setdefault(row["scene"], set()).add(source.path)
-    paths = [path for path in dict.fromkeys(source.path for source in sources)
-             if any(path in files and len(files) > 1 for files in scenes.values())]
-    if not paths:
-        return None
-    found = ask(program, "history", "--format", "json", "--", *paths)
-    by_path = {source.path: source for source in sources}
-    found["sources"] = [by_path[file["file"]] for file in found["files"]]
-    found["series"] = [series for series in found["series"] if len(series["points"]) > 1]
-    return found if found["series"] else None
+def same_work(old, new):
+    """What the older row does not state is not judged."""
+    return all(str(old.get(name, "")) in ("", "nan", str(new.get(name))) for name in WORK)
+
+
+def find_series(sources):
+    """The points of each scene of the same work."""
+    found = []
+    for at, source in enumerate(sources):
+        for row in timed(source):
+            point = {"file": at, "row": row, "value": row["total_ms"], "low": row["total_low_ms"], "high": row["total_high_ms"]}
+            points = next((points for points in found if points[-1]["file"] != at and same_work(points[-1]["row"], row)), None)
+            if points is None:
+                found.append(points := [])
+            points.append(point)
+    return found
+
+
+def find_changes(points):
+    values = [point["value"] for point in points]
+    found = change_point.find_changes(values)
+    ends = [0, *found, len(values)]
+    for before, here, after in zip(ends, ends[1:], ends[2:]):
+        ratio, low, high = change_point.ratio(values[before:here], values[here:after])
+        yield {"point": here, "p": found[here], "ratio": ratio, "low": low, "high": high}
+
+
+def find_marks(sources):
+    """Where the machine differs from that of the file before, as far as both say."""
+    for at, (old, new) in enumerate(zip(sources, sources[1:]), 1):
+        for name, what in MACHINE.items():
+            before, now = (str(source.machine.get(name, ""))[:120] for source in (old, new))
+            if before != now and not {before, now} & {"", "unknown"}:
+                yield {"file": at, "what": what, "old": before, "new": now}
+
+
+def read(sources):
+    """The history of all files that have rows, the oldest first; None where no scene is in two of them."""
+    sources = list({source.path: source for source in sources}.values())
+    files = collections.Counter(scene for source in sources for scene in {row["scene"] for row in timed(source)})
+    sources = sorted((source for source in sources if any(files[row["scene"]] > 1 for row in timed(source))),
+                     key=lambda source: source.machine["utc"])
+    series = [{name: points[-1]["row"][name] for name in ("scene", "engine", "threads")}
+              | {"points": points, "changes": list(find_changes(points))}
+              for points in find_series(sources) if len(points) > 1]
+    return {"sources": sources, "series": series, "marks": list(find_marks(sources))} if series else None
 
 
 def superseded(found):
@@ -160,7 +193,11 @@ def side_by_side(program, found):
     shared = [(series["points"][0]["file"], series["points"][-1]["file"]) for series in found["series"]]
     old, new = max(shared, key=lambda pair: pair[1] - pair[0])
     old, new = found["sources"][old], found["sources"][new]
-    compared = ask(program, "regress", "--format", "json", "--quiet", "--", old.path, new.path)
+    done = subprocess.run([program, "regress", "--format", "json", "--quiet", "--", old.path, new.path], capture_output=True,
+                          text=True)
+    if not done.stdout:  # otherwise its exit code is a verdict
+        raise Unusable(done.stderr.strip().split(": ", 1)[-1] or f"{program} regress ended with {done.returncode}")
+    compared = json.loads(done.stdout)
     table = Table("Side by side: the oldest file and the newest",
                   ["scene", "time", "A ms", "B ms", "B / A", "95%", "threshold", "verdict"],
                   f"A: {named(old)}. B: {named(new)}. {compared['verdict'][:1].upper()}{compared['verdict'][1:]}. Repeats are "

@@ -114,7 +114,7 @@ def baselines_part(files):
 
 def compose(program, files):
     """What was found, in sentences, and the sections."""
-    past = history.read(program, files)
+    past = history.read(files)
     if past:
         files = [source for source in files if source not in history.superseded(past)]
     parts = [scenes_part(files), measured_part(files), history_part(program, past), baselines_part(files), claims_part(files),

@@ -26,10 +26,12 @@ except ImportError as missing:
     print(f"skipped: {missing}; scripts/setup run installs it")
     sys.exit(77)
 
+import change_point  # noqa: E402
 import claim_figures  # noqa: E402
 import draft  # noqa: E402
 import drawing  # noqa: E402
 import headline  # noqa: E402
+import history  # noqa: E402
 import main  # noqa: E402
 import row_figures  # noqa: E402
 import sources  # noqa: E402
@@ -82,6 +84,65 @@ class Page(html.parser.HTMLParser):
             if "button" in self.open:
                 self.buttons[-1] += data
             self.text += data
+
+
+class ChangePoint(unittest.TestCase):
+    """Series that change where they are made to, or nowhere."""
+
+    def setUp(self):
+        self.rng = np.random.default_rng(5)
+
+    def times(self, *parts, noise=0.01):
+        """Parts of so many values, each of about one time."""
+        return np.concatenate([value * np.exp(self.rng.normal(0, noise, count)) for count, value in parts])
+
+    def test_a_change_is_found_where_it_is(self):
+        for trial in range(8):
+            values = self.times((5 + trial, 1), (9 + 2 * trial, 1.1 if trial % 2 else 0.9))
+            found = change_point.find_changes(values)
+            self.assertIn(5 + trial, found)
+            self.assertTrue(all(0 < p <= change_point.LEVEL for p in found.values()))
+            self.assertEqual(found, change_point.find_changes(values))
+            x = np.log(values)  # the statistic as equations 5 to 7 have it, from all pairs
+
+            def q(m, k, x=x):
+                within = [np.abs(part[:, None] - part).sum() / (len(part) * (len(part) - 1)) for part in (x[:m], x[m:k])]
+                return m * (k - m) / k * (2 * np.abs(x[:m, None] - x[m:k]).mean() - sum(within))
+
+            best = max((q(m, k), m) for m in range(3, len(x) - 2) for k in range(m + 3, len(x) + 1))
+            self.assertEqual(change_point.split(x)[1], best[1])
+            self.assertAlmostEqual(change_point.split(x)[0], best[0], places=12)
+
+    def test_several_changes_are_found_and_how_large_they_are(self):
+        values = self.times((20, 1), (15, 1.2), (25, 0.8))
+        self.assertEqual(list(change_point.find_changes(values)), [20, 35])
+        ratio, low, high = change_point.ratio(values[:20], values[20:35])
+        self.assertTrue(1.18 < low < ratio < high < 1.22, (low, ratio, high))
+
+    def test_a_series_that_does_not_change_has_no_change(self):
+        """One of a hundred has; of 40 more than 3 in one run of a thousand. One slow file is no change either."""
+        alarms = 0
+        for trial in range(40):
+            values = self.times((20, 1), noise=0.01 if trial % 2 else 0.2)
+            values[11] *= 3 if trial % 4 == 0 else 1
+            alarms += bool(change_point.find_changes(values))
+        self.assertLessEqual(alarms, 3)
+
+    def test_few_values_or_equal_ones_have_no_change(self):
+        self.assertEqual(change_point.find_changes([1] * 30), {})
+        self.assertEqual(change_point.find_changes([1] * 4 + [2] * 5), {})
+        self.assertEqual(list(change_point.find_changes([1] * 6 + [2] * 6)), [6])
+
+    def test_a_series_is_of_the_same_work(self):
+        """What an older file does not state is not judged; rows that are BUSY, or INVALID, are left out."""
+        row = {"scene": "x", "engine": "octree", "precision": "single", "threads": 1, "particles": 9, "w": 1, "epsilon": 0.0,
+               "h": 0.01, "valid": 1, "total_ms": 2.0, "total_low_ms": 1.0, "total_high_ms": 3.0}
+        rows = [row, row | {"input_hash": 7}, row | {"epsilon": 0.5}, row | {"total_ms": float("nan")}, row | {"valid": 0},
+                row | {"input_hash": 8}, row | {"isa": "avx2", "input_hash": 7}]
+        files = [mock.Mock(rows=[row], machine={"kernel": "unknown" if n == 3 else str(n > 4)}) for n, row in enumerate(rows)]
+        found = [[point["file"] for point in points] for points in history.find_series(files)]
+        self.assertEqual(found, [[0, 1, 6], [2], [5]])
+        self.assertEqual(list(history.find_marks(files)), [{"file": 5, "what": "kernel", "old": "False", "new": "True"}])
 
 
 def shapebench(*words):
