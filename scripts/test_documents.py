@@ -24,7 +24,7 @@ ELSEWHERE = {
     r"scripts/run view|scripts/view/film.py": "scripts/view/run_tests.py",
     r"scripts/run regress --revision": "scripts/check_regress.sh",
     r"scripts/run regress --baseline": "bench/regress/test_regress.c; a stored file wants a quiet machine",
-    r"scripts/run kernels.*(setup|oct-|resampling)": "bench/kernels/test_kernels.c",
+    r"scripts/run kernels.*(oct-|resampling)": "bench/kernels/test_kernels.c",
     r"for |scripts/render.py .*\{": "whoever makes the pictures anew; scripts/test_render.sh",
     r"scripts/publish|scripts/view/pictures|scripts/test|scripts/setup": "CI, or whoever publishes",
     r"mpirun": "bench/sweep/test_sweep_run.c",

@@ -209,8 +209,7 @@ static void report(BenchJob *job, BenchKernelRow *row)
     SmCounts counts;
     cube->type->count(cube->engine, &counts);
     job->own_ns = 1e9 * bench_quartiles(change->trial.cpu, change->trial.samples).median;
-    job->least = oct_regions_operations(0, 0, counts.summation_nodes); /* lists written */
-    job->least.far_bytes *= (double)cube->regions;
+    job->least.far_bytes = (4 * counts.summation_nodes + 16) * (double)cube->regions; /* lists */
     job->footprint = (double)counts.bytes;
     snprintf(row->note, sizeof row->note,
              "%.3g ms of CPU time: %d %s, in %ld nodes; %ld regions anew", job->own_ns / 1e6,

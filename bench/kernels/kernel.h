@@ -60,7 +60,6 @@ typedef struct {
     int threads;       /* 0: as asked for */
     bool doubled;      /* in double precision, beside single */
     bool large;        /* only by name or with `scaling` */
-    bool huge;         /* only by name */
     const char *base;  /* the kernel that it is compared with, */
     double wanted;     /* how many times its time or, on more threads, its speed */
     const char *paper; /* what the paper says */
@@ -115,24 +114,10 @@ SmCode bench_jobs_open(BenchJob *jobs, int count, SmError *error);
 SmCode bench_jobs_time(BenchJob *jobs, int count, SmError *error);
 void bench_jobs_close(BenchJob *jobs, int count);
 
-/* The voxeliser, the embedding and the octree surface, on the statue of 200,000 triangles. */
-enum { BENCH_VOXELISE, BENCH_EMBED, BENCH_CARRY };
-
-/* What comes before the octree's first step. */
-typedef enum {
-    BENCH_SETUP_DISTANCES, /* Bucket-Moore: from a source to all that it reaches */
-    BENCH_SETUP_GRAPH,
-    BENCH_SETUP_REGIONS,   /* their distances included */
-    BENCH_SETUP_STRUCTURE, /* graph, distances and regions */
-    BENCH_SETUP_SAMPLING,  /* the tree from voxels; finding the lattice's place included */
-    BENCH_SETUP_WHOLE,     /* tree, graph, regions and engine from voxels */
-} BenchSetupKind;
-
 /* A change of an octree while it runs: leaves split and merged again, edges of the graph cut. */
 enum { BENCH_REFINE, BENCH_CUT };
 
-extern const BenchKernelKind bench_cube_kernels, bench_cube_setup_kernels, bench_polar_kernels,
-    bench_surface_kernels, bench_scene_kernels, bench_tree_step_kernels, bench_tree_setup_kernels,
-    bench_change_kernels;
+extern const BenchKernelKind bench_cube_kernels, bench_polar_kernels, bench_scene_kernels,
+    bench_tree_step_kernels, bench_change_kernels;
 
 #endif

@@ -41,19 +41,6 @@
         PART(number, of, prefix "-goals-hf", BENCH_TREE_GOALS, .at_most = 0),                      \
         PART(number, of, prefix "-goals-adjoint", BENCH_TREE_GOALS, .adjoint = true),              \
         PART(number, of, prefix "-damping", BENCH_TREE_DAMPING, .at_most = 0)
-#define CUBE(label, number, n, ...)                                                                \
-    {                                                                                              \
-        label, "setup", &bench_cube_setup_kernels, number, n, 1, .damping = 0.1, __VA_ARGS__       \
-    }
-#define SETUP(number, of, label, which, ...)                                                       \
-    {                                                                                              \
-        label, "octree", &bench_tree_setup_kernels, number, .side = (of), .part = (which),         \
-                                                            __VA_ARGS__                            \
-    }
-/* Linear: from 1e3 to 1e6 nodes a node's cost at most doubles, an exponent of 1.1. Beside cubes of
- * fewer nodes at their surface (1.2 times the edges) come the caches that they outgrow. */
-#define GROWTH(number, of, label, ...)                                                             \
-    SETUP(number, of, label, BENCH_SETUP_WHOLE, .base = "oct-setup-1e3", .wanted = 2, __VA_ARGS__)
 /* The cost of a change does not grow with the body: at most twice the processor time that it takes
  * in 10^3 nodes, whose caches the others outgrow. */
 #define CHANGE(number, of, label, which, ...)                                                      \
@@ -80,9 +67,6 @@ static const BenchKernel kernels[] = {
     {"polar-robust", "polar", &bench_polar_kernels, 10, .part = BENCH_POLAR_ROBUST},
     {"damping", "damping", &bench_cube_kernels, 11, 64, 1, .part = SM_DAMPING, .damping = 0.1},
     {"integration", "integration", &bench_cube_kernels, 11, 64, 1, .part = SM_OTHER},
-    {"voxeliser", "voxeliser", &bench_surface_kernels, 12, .part = BENCH_VOXELISE},
-    {"embedding", "embedding", &bench_surface_kernels, 12, .part = BENCH_EMBED},
-    {"octree-surface", "embedding", &bench_surface_kernels, 12, .part = BENCH_CARRY},
     STEP("cube32-w1", "cases", 20, 32, 1, .at_most = 8, .avx2_share = 0.35),
     STEP("cube64-w1", "cases", 21, 64, 1, .at_most = 8),
     STEP("cube64-w1-2threads", "cases", 21, 64, 1, .threads = 2, .base = "cube64-w1",
@@ -104,21 +88,11 @@ static const BenchKernel kernels[] = {
     STEP("scale-1e5", "scaling", 40, 46, 1, .base = "scale-1e4", .wanted = 1.25),
     STEP("scale-1e6", "scaling", 40, 100, 1, .base = "scale-1e4", .wanted = 1.25),
     STEP("scale-1e7", "scaling", 40, 215, 1, .large = true, .base = "scale-1e4", .wanted = 1.25),
-    CUBE("setup-64", 41, 64, .at_most = 0),
-    CUBE("setup-128", 42, 128, .at_most = 150),
-    CUBE("setup-128-2threads", 43, 128, .threads = 2),
-    CUBE("setup-256", 44, 256, .at_most = 350, .large = true),
-    CUBE("setup-464", 45, 464, .huge = true), /* 10^8 particles */
     PARTS(50, BENCH_HAND, "oct-hand"),
     PART(50, BENCH_HAND, "oct-hand-step", BENCH_TREE_WHOLE, .at_most = 60e3, .avx2_share = 0.20,
          .paper = "4.5 ms"),
     PART(50, BENCH_HAND, "oct-hand-step-plain", BENCH_TREE_WHOLE, .weighting = OCT_PLAIN),
     PART(50, BENCH_HAND, "oct-hand-step-adjoint", BENCH_TREE_WHOLE, .adjoint = true),
-    SETUP(50, BENCH_HAND, "oct-hand-distances", BENCH_SETUP_DISTANCES, .at_most = 0),
-    SETUP(50, BENCH_HAND, "oct-hand-graph", BENCH_SETUP_GRAPH, .at_most = 0),
-    SETUP(50, BENCH_HAND, "oct-hand-regions", BENCH_SETUP_REGIONS, .at_most = 0),
-    SETUP(50, BENCH_HAND, "oct-hand-structure", BENCH_SETUP_STRUCTURE, .at_most = 30e6),
-    SETUP(50, BENCH_HAND, "oct-hand-sampling", BENCH_SETUP_SAMPLING, .at_most = 0),
     PARTS(51, BENCH_REGULAR_HAND, "oct-regular"),
     PART(51, BENCH_REGULAR_HAND, "oct-regular-step", BENCH_TREE_WHOLE, .at_most = 120,
          .paper = "6200 ns"),
@@ -127,13 +101,6 @@ static const BenchKernel kernels[] = {
     PART(51, BENCH_REGULAR_HAND, "oct-regular-step-adjoint", BENCH_TREE_WHOLE, .adjoint = true),
     PART(51, BENCH_REGULAR_HAND, "oct-regular-step-2threads", BENCH_TREE_WHOLE, .threads = 2,
          .base = "oct-regular-step", .wanted = 1.8),
-    SETUP(51, BENCH_REGULAR_HAND, "oct-regular-distances", BENCH_SETUP_DISTANCES, .at_most = 0),
-    SETUP(51, BENCH_REGULAR_HAND, "oct-regular-graph", BENCH_SETUP_GRAPH, .at_most = 0),
-    SETUP(51, BENCH_REGULAR_HAND, "oct-regular-regions", BENCH_SETUP_REGIONS, .at_most = 0),
-    SETUP(52, 10, "oct-setup-1e3", BENCH_SETUP_WHOLE, .at_most = 0),
-    GROWTH(53, 22, "oct-setup-1e4", .at_most = 0),
-    GROWTH(54, 46, "oct-setup-1e5", .at_most = 0),
-    GROWTH(55, 100, "oct-setup-1e6", .large = true),
     CHANGE(60, 10, "oct-refine-1e3", BENCH_REFINE, .at_most = 0),
     CHANGE(60, 10, "oct-cut-1e3", BENCH_CUT, .at_most = 0),
     CHANGES(61, 22, "1e4", .at_most = 0),
@@ -164,8 +131,8 @@ bool bench_kernel_known(const char *name)
     return false;
 }
 
-/* Is it asked for? A large one only by its name or with `scaling`, a huge one by its name; what is
- * in double precision anyway only once. */
+/* Is it asked for? A large one only by its name or with `scaling`; what is in double precision
+ * anyway only once. */
 static bool chosen(const BenchKernelParams *params, const BenchKernel *kernel)
 {
     bool any = !params->only[0];
@@ -174,7 +141,7 @@ static bool chosen(const BenchKernelParams *params, const BenchKernel *kernel)
         if (!strcmp(*only, kernel->name)) return true;
         any = any || !strcmp(*only, kernel->group);
     }
-    return any && !kernel->huge && (!kernel->large || params->scaling);
+    return any && (!kernel->large || params->scaling);
 }
 
 static bool has_base(const BenchKernel *kernel, const BenchKernel *base)

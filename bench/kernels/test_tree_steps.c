@@ -1,5 +1,4 @@
-/* Steps and set-up of the octree that are timed: wrong ones are found, and what they do is counted.
- */
+/* Steps of the octree that are timed: wrong ones are found, and what they do is counted. */
 #include "../../lib/test_frame.h"
 #include "../../octree/operations.h"
 #include "../check/tree_check.h"
@@ -45,78 +44,6 @@ TEST(a_wrong_octree_step_is_not_timed)
     oct_structure_free(&body);
 }
 
-/* Prepared anew on the body of another job, which has been damaged: it is not valid. */
-static void is_found_wrong(const BenchJob *other, BenchSetupKind kind, const char *says)
-{
-    BenchKernel kernel = *other->kernel;
-    BenchJob job = *other;
-    SmError error;
-    kernel.part = kind;
-    job.kernel = &kernel;
-    job.shares = true;
-    assert_int_equal(bench_jobs_time(&job, 1, &error), SM_OK);
-    assert_false(job.trial->valid);
-    assert_non_null(strstr(job.trial->reason, says));
-    assert_null(job.trial->seconds);
-    bench_jobs_close(&job, 1);
-}
-
-/* Cubes that are held to the twins, and to what regular trees are. */
-TEST(a_wrong_octree_setup_is_not_timed)
-{
-    const BenchKernelParams params = {.precision = BENCH_F64, .threads = 1, .repeats = 2};
-    for (int side = 6; side <= 12; side += 6) {
-        enum { KINDS = BENCH_SETUP_WHOLE + 1 };
-        BenchKernel kernel[KINDS];
-        BenchJob job[KINDS];
-        SmError error;
-        for (int k = 0; k < KINDS; k++) {
-            kernel[k] = (BenchKernel){.kind = &bench_tree_setup_kernels, .side = side, .part = k};
-            job[k] = bench_job(&kernel[k], &params, NULL);
-        }
-        assert_int_equal(bench_jobs_open(job, KINDS, &error), SM_OK);
-        for (int k = 0; k < KINDS; k++) {
-            BenchKernelRow row = {.ns = 1};
-            assert_int_equal(bench_jobs_time(&job[k], 1, &error), SM_OK);
-            assert_true(job[k].trial->valid);
-            assert_in_range(job[k].trial->samples, 1, 2);
-            kernel[k].kind->report(&job[k], &row);
-            /* only what builds an engine holds more than the tree, its graph and its regions */
-            assert_int_equal(job[k].footprint > job[BENCH_SETUP_STRUCTURE].footprint &&
-                                 k > BENCH_SETUP_STRUCTURE,
-                             k == BENCH_SETUP_WHOLE);
-        }
-        OctStructure *body = &((BenchTreeBody *)job->body)->structure;
-        body->regions.members.item[0] = body->tree.node[body->tree.leaves - 1];
-        is_found_wrong(job, BENCH_SETUP_REGIONS, "region");
-        oct_graph_length(&body->graph)[0]++;
-        is_found_wrong(job, BENCH_SETUP_GRAPH, "edge");
-        bench_jobs_close(job, KINDS);
-    }
-}
-
-TEST(wrong_distances_are_found)
-{
-    OctStructure body;
-    OctReach reach;
-    SmError error;
-    char reason[BENCH_TREE_REASON];
-    assert_int_equal(bench_sampled(5, &body, &error), SM_OK);
-    oct_reach_init(&reach, &body.graph);
-    oct_reach_from(&reach, 7, OCT_FAR / 2);
-    assert_true(bench_tree_check_distances(&reach, 7, reason));
-    for (int by = -1; by <= 1; by += 2) {
-        reach.distance[100] += by;
-        assert_false(bench_tree_check_distances(&reach, 7, reason));
-        reach.distance[100] -= by;
-    }
-    reach.distance[100] = OCT_FAR;
-    assert_false(bench_tree_check_distances(&reach, 7, reason));
-    oct_reach_free(&reach);
-    oct_structure_free(&body);
-}
-
-/* One base cell, split down to the finest. */
 TEST(octree_work_is_counted)
 {
     OctStructure body;

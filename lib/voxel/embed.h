@@ -3,7 +3,6 @@
 #define SM_EMBED_H
 
 #include "../mesh/mesh.h"
-#include "../operations.h"
 #include "sites.h"
 
 /* A vertex beside a cut whose particles lie in a plane, on a line or in one place (embed_cut.h): to
@@ -48,15 +47,5 @@ void sm_embed_apply(const SmEmbedding *embedding, const double (*x)[3], double (
 
 /* U and V, orthonormal, U x V along the normal; zero where that is. */
 void sm_embed_tangents(const double normal[3], double u[3], double v[3]);
-
-/* What sm_embed_apply() takes a vertex, normal included (eqs. 15 to 17): 7 differences of 3 values,
- * three blends of 7 x 3 multiply-adds, a normal 24. Reads 8 corners and 3 x 8 weights of 4 bytes
- * and each particle once, writes position and normal, in double precision. */
-static inline SmOperations sm_embed_operations(double particles_per_vertex)
-{
-    return (SmOperations){.flops = 21 + 3 * 42 + 3 + 24,
-                          .near_bytes = 32 + 96 + 8 * 24 + 48,
-                          .far_bytes = 32 + 96 + 48 + 24 * particles_per_vertex};
-}
 
 #endif

@@ -4,7 +4,6 @@
 #define SM_VOXELISE_H
 
 #include "../mesh/mesh.h"
-#include "../operations.h"
 #include "voxel.h"
 
 typedef enum { SM_SOLID, SM_SHELL } SmFill;
@@ -65,13 +64,5 @@ SmCode sm_voxelise(const SmMesh *mesh, const SmVoxelParams *params, const char *
 /* What the report of a SM_SOLID tells a user about the surface: "closed", "open, but its holes are
  * narrower than a cell" and so on. All can be simulated. */
 const char *sm_voxel_verdict(const SmVoxelReport *report);
-
-/* What voxelising takes a triangle: its three numbers and each vertex's position must be read;
- * finding the first cell takes 9 multiply-adds, a plane's normal and offset 14. The lattice, a bit
- * a cell, is small. */
-static inline SmOperations sm_voxelise_operations(double vertices_per_triangle)
-{
-    return (SmOperations){.flops = 18 + 14, .far_bytes = 12 + 24 * vertices_per_triangle};
-}
 
 #endif

@@ -46,12 +46,4 @@ void oct_reach_from_all(OctReach *reach, long count, const struct OctSource *sou
 void oct_reach_grow(OctReach *reach, long leaves);
 void oct_reach_update(OctReach *reach, long leaf);
 
-/* What a search takes that looks at so many edges of so many leaves: an edge's end and length, and
- * the end's distance, are read; of a leaf reached its edges are found and its distance and place in
- * the order written. */
-static inline SmOperations oct_reach_operations(double edges, double reached)
-{
-    return (SmOperations){.near_bytes = 12 * edges + 24 * reached};
-}
-
 #endif

@@ -4,7 +4,6 @@
 
 #include "../../lib/csr.h"
 #include "../../lib/cut/cut.h"
-#include "../../lib/operations.h"
 #include "../../lib/pieces.h"
 #include "../tree/tree.h"
 
@@ -51,14 +50,5 @@ void oct_graph_pieces(const OctTree *tree, const OctGraph *graph, SmPieces *piec
 
 /* Memory of the graph. */
 size_t oct_graph_bytes(const OctGraph *graph);
-
-/* What building takes a leaf: the tree read (a node's centre, size, parent, first child and leaf
- * number), 26 neighbouring cells each found by a number at least, an edge's end and length written.
- */
-static inline SmOperations oct_graph_operations(const OctTree *tree, double edges)
-{
-    return (SmOperations){.near_bytes = 26 * 4,
-                          .far_bytes = 28 * (double)tree->nodes / (double)tree->leaves + 8 * edges};
-}
 
 #endif

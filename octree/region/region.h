@@ -53,15 +53,4 @@ size_t oct_regions_bytes(const OctRegions *regions);
 /* The leaves of region i, size[i] of them, in no set order. */
 void oct_regions_leaves(const OctTree *tree, const OctRegions *regions, long i, int *leaf);
 
-/* What a region takes: beyond the search (oct_reach_operations()) the tree's leaf number and parent
- * of what it reached are read, and its summation nodes written. */
-static inline SmOperations oct_regions_operations(double edges, double reached,
-                                                  double summation_nodes)
-{
-    SmOperations search = oct_reach_operations(edges, reached);
-    search.near_bytes += 8 * reached;
-    search.far_bytes = 4 * summation_nodes + 16;
-    return search;
-}
-
 #endif

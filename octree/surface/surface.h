@@ -22,7 +22,6 @@
 #include <stdint.h>
 
 #include "../../lib/mesh/mesh.h"
-#include "../../lib/operations.h"
 #include "../../lib/pieces.h"
 #include "gradient.h"
 #include "skinning.h"
@@ -75,16 +74,5 @@ long oct_surface_agree(OctSurface *surface, const SmMesh *mesh, const OctCarrier
  * Allocates nothing. OpenMP's number of threads, of which any gives the same bits. */
 void oct_surface_move(OctSurface *surface, const double (*x)[3], double (*position)[3],
                       double (*normal)[3]);
-
-/* What oct_surface_move() takes a vertex that so many nodes move. Each: 3 differences, 9
- * multiply-adds, and 3 and 9 values blended by difference; a normal 9 cofactors of 3, 9
- * multiply-adds, a root. Reads 8 bytes and the node's F, x and centre; rest position and normal,
- * writes both; a node's gradient must be written at least. */
-static inline SmOperations oct_surface_operations(double blended, double nodes_per_vertex)
-{
-    return (SmOperations){.flops = (3 + 18 + 3 * 12) * blended + 27 + 18 + 10,
-                          .near_bytes = (8 + 72 + 24 + 24) * blended + 96,
-                          .far_bytes = 8 * blended + 8 + 96 + 120 * nodes_per_vertex};
-}
 
 #endif
