@@ -33,7 +33,6 @@ endif()
 if(zlib)
   set_property(SOURCE lib/mesh/reader.c APPEND PROPERTY COMPILE_DEFINITIONS SM_ZLIB)
 endif()
-set_property(SOURCE lib/mesh/import.c APPEND PROPERTY COMPILE_OPTIONS "-Drealpath(path,room)=NULL") # there are no files
 target_include_directories(shapebench_objects SYSTEM PRIVATE ${json}/src ${json}/android ${SHAPEBENCH_VIEW}/zlib)
 
 sources_of(view_sources bench/view/*.c)

@@ -198,7 +198,7 @@ TEST(mistakes_of_other_commands_are_too)
         {"regress --revision HEAD --paper meshles", 2, "did you mean 'meshless'? See"},
         {"sweep --engine octre", 2, "did you mean 'octree'? See"},
         {"kernels --only polar-fats", 2, "did you mean 'polar-fast'? See"},
-        {"kernels --only embeding", 2, "did you mean 'embedding'? See"},
+        {"kernels --only scalling", 2, "did you mean 'scaling'? See"},
         {"kernels --list --threads 2", 2, "--list goes alone"},
         {"tables --format pdf", 2, "'pdf' is not one of text, markdown, csv, latex, json"},
         {"tables penguin", 2, "what is 'penguin'?"},

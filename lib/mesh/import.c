@@ -25,8 +25,10 @@ static bool read_whole_file(const char *path, unsigned char **bytes, size_t *siz
     return false;
 }
 
-/* An SmMeshBeside of the mesh's path. Links are followed before the folder is compared. WebAssembly
- * has no files. */
+#ifdef __wasm__
+static const SmMeshBeside read_file_beside; /* there are no files */
+#else
+/* An SmMeshBeside of the mesh's path. Links are followed before the folder is compared. */
 static bool read_file_beside(void *of, const char *name, unsigned char **bytes, size_t *size)
 {
     const char *path = of, *slash = strrchr(path, '/');
@@ -43,6 +45,7 @@ static bool read_file_beside(void *of, const char *name, unsigned char **bytes, 
     sm_free_all(joined, folder, resolved);
     return good;
 }
+#endif
 
 static bool open_mesh(const char *path, SmMeshFile *file, unsigned char **bytes, SmError *error)
 {
