@@ -28,7 +28,7 @@ static int finish_mesh(SmCode code, const SmError *why, SmMesh *mesh, sb_mesh **
 {
     if (code) return sm_done(code, why, error);
     *result = sm_alloc(1, sizeof **result);
-    **result = (sb_mesh){SB_IS_MESH, *mesh};
+    **result = (sb_mesh){.kind = SB_IS_MESH, .mesh = *mesh};
     return sm_done(SM_OK, why, error);
 }
 
@@ -44,6 +44,7 @@ int sb_mesh_load(const char *path, const sb_load_params *params, sb_mesh **mesh,
 {
     sb_load_params p = {0};
     SmMesh made;
+    SmMeshLeftOut left_out;
     SmError why;
     int code = begin(mesh, "mesh", error);
     if (!code) code = sm_check_given(path, "path", error);
@@ -52,8 +53,10 @@ int sb_mesh_load(const char *path, const sb_load_params *params, sb_mesh **mesh,
     if (!code) code = sm_check_range(p.megabytes, 0, 1e6, "megabytes", error);
     if (code) return code;
     SmImportLimits limits = {p.seconds, p.megabytes};
-    SmCode inner = sm_import(path, &limits, &made, NULL, &why);
-    return finish_mesh(inner, &why, &made, mesh, error);
+    SmCode inner = sm_import(path, &limits, &made, &left_out, &why);
+    code = finish_mesh(inner, &why, &made, mesh, error);
+    if (!code) (*mesh)->left_out = left_out;
+    return code;
 }
 
 int sb_mesh_make(int64_t vertices, const double *position, int64_t triangles, const int *triangle,
@@ -97,6 +100,7 @@ int sb_mesh_measure(const sb_mesh *mesh, sb_mesh_facts *facts, size_t size, sb_e
     if (!code) code = sm_check_given(facts, "facts", error);
     if (code) return code;
     SmMeshInfo info = sm_mesh_info(&mesh->mesh);
+    const SmMeshLeftOut *out = &mesh->left_out;
     sb_mesh_facts all = {.vertices = info.vertices,
                          .triangles = info.triangles,
                          .components = info.components,
@@ -106,7 +110,8 @@ int sb_mesh_measure(const sb_mesh *mesh, sb_mesh_facts *facts, size_t size, sb_e
                          .degenerate = info.degenerate,
                          .duplicates = info.duplicates,
                          .watertight = info.watertight,
-                         .volume = info.volume};
+                         .volume = info.volume,
+                         .left_out = out->points + out->lines + out->curves + out->scenes};
     memcpy(all.low, info.low, sizeof all.low);
     memcpy(all.high, info.high, sizeof all.high);
     sm_give(&all, sizeof all, facts, size);

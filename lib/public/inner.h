@@ -4,6 +4,7 @@
 
 #include "../../octree/change/refinement.h"
 #include "../cut/blade.h"
+#include "../mesh/reader.h"
 #include "../voxel/voxelise.h"
 #include "shapebench.h"
 #include "skin.h"
@@ -14,6 +15,7 @@ typedef enum { SB_IS_MESH = 0x73624d31, SB_IS_VOXELS = 0x73625631, SB_IS_BODY = 
 struct sb_mesh {
     SbKind kind;
     SmMesh mesh;
+    SmMeshLeftOut left_out; /* of its file */
 };
 
 struct sb_voxels {

@@ -115,6 +115,7 @@ typedef struct {
     int watertight;            /* 1: no open and no non-manifold edge */
     double low[3], high[3];    /* bounding box */
     double volume;             /* below 0 if inside out; NaN of a mesh that bounds none */
+    int64_t left_out; /* points, lines, curves and further scenes of its file, which it lacks */
 } sb_mesh_facts;
 
 void sb_load_params_init(sb_load_params *params, size_t size);
@@ -122,7 +123,7 @@ void sb_load_params_init(sb_load_params *params, size_t size);
 /* Reads a mesh file: OBJ, PLY, STL, OFF, glTF or GLB, also compressed (.gz), in double precision;
  * and, where the library has Assimp, its formats, in a child process within the limits (`params`
  * may be NULL: the defaults). Polygons are triangulated, equal positions merged; points and lines
- * are left out. A damaged file is an error (SB_INPUT). */
+ * are left out, and counted. A damaged file is an error (SB_INPUT). */
 int sb_mesh_load(const char *path, const sb_load_params *params, sb_mesh **mesh, sb_error *error);
 
 /* A mesh of the caller's `vertices` points and of triangles that name three of them each,

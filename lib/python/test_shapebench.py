@@ -235,6 +235,14 @@ class Refusals(unittest.TestCase):
         self.refused(ValueError, "'vertices' has masked", sb.Mesh, np.ma.masked_greater(x, 0.5), quads[:, :3])
         self.refused(ValueError, "'mass' has the shape (2,)", beam, mass=[1, 1])
 
+    def test_what_a_file_holds_beside_its_mesh_is_said(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "lines.obj"
+            path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nl 1 2\nl 2 3\n", encoding="ascii")
+            with self.assertWarnsRegex(UserWarning, "lines.obj: 2 points, lines, curves or scenes are left out"):
+                mesh = sb.Mesh.load(path)
+        self.assertEqual((mesh.facts().left_out, mesh.facts().triangles), (2, 1))
+
     def test_a_file_name_is_whole(self):
         self.refused(ValueError, "0 character", sb.Mesh.load, "a\0b")
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import os
+import warnings
 import weakref
 from dataclasses import dataclass
 from typing import Any, List, Optional, Tuple, Union
@@ -32,6 +33,7 @@ class MeshFacts:
     low: Three  # bounding box
     high: Three
     volume: float  # below 0 if inside out; NaN of a mesh that bounds none
+    left_out: int  # points, lines, curves and further scenes of its file, which it lacks
 
 
 @dataclass(frozen=True)
@@ -84,12 +86,14 @@ class Mesh(Made):
 
     @classmethod
     def load(cls, path: Union[str, "os.PathLike[str]"], *, seconds: float = 0, megabytes: float = 0) -> "Mesh":
-        """Reads a file of any format that Assimp reads (OBJ, PLY, STL, OFF, glTF, ...): polygons are triangulated, equal
-        positions merged. The importer runs in a child process within these limits; 0: 20 s and one more for each MB of
-        the file, 4096 MB. The wheel's library reads no files, and says so."""
+        """Reads OBJ, PLY, STL, OFF, glTF and GLB, also compressed (.gz): polygons are triangulated, equal positions merged.
+        A warning says how much else the file holds. Other formats are read where the library has Assimp, which the wheel's
+        has not, in a child process within these limits; 0: 20 s and one more for each MB of the file, 4096 MB."""
         limits = face.params("sb_load_params", [("seconds", seconds), ("megabytes", megabytes)], {})
         made = cls.__new__(cls)
         made._take("sb_mesh_load", face.chars(os.fspath(path), "path"), ctypes.byref(limits))
+        if left_out := made.facts().left_out:
+            warnings.warn(f"{path}: {left_out} points, lines, curves or scenes are left out", stacklevel=2)
         return made
 
     @classmethod
