@@ -64,9 +64,15 @@ void momentum_room(Momentum *m, long blocks)
     momentum_forget(m);
 }
 
+/* Of all bodies, and one more. */
+static size_t noted_blocks(const Momentum *m)
+{
+    return (size_t)(m->abreast ? all_blocks(m) : m->bodies * m->blocks) + 1;
+}
+
 void momentum_notes(Momentum *m)
 {
-    size_t blocks = (size_t)(m->abreast ? all_blocks(m) : m->bodies * m->blocks) + 1;
+    size_t blocks = noted_blocks(m);
     m->notes.noted = room(m->notes.noted, blocks, sizeof *m->notes.noted);
     m->notes.before = room(m->notes.before, blocks * 6 * SM_LANES, sizeof *m->notes.before);
     memset(m->notes.noted, 0, blocks * sizeof *m->notes.noted);
@@ -574,8 +580,9 @@ void momentum_shift(Momentum *m, long body, const double by[3])
 
 long momentum_bytes(const Momentum *m)
 {
-    size_t slot = sizeof *m->mass + sizeof *m->label + (m->frame ? sizeof *m->frame : 0);
-    return (long)((size_t)slots_of(m) * slot + (size_t)m->piece_room * sizeof *m->piece +
+    size_t slot = sizeof *m->mass + sizeof *m->label + (m->frame ? sizeof *m->frame : 0),
+           notes = m->notes.noted ? noted_blocks(m) * (6 * SM_LANES * sizeof(real) + 1) : 0;
+    return (long)(notes + (size_t)slots_of(m) * slot + (size_t)m->piece_room * sizeof *m->piece +
                   RUNS_AT_ONCE * sizeof(RunSum) + ((size_t)all_blocks(m) + 1) * sizeof *m->run);
 }
 

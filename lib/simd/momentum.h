@@ -151,9 +151,9 @@ SM_INLINE void momentum_note(const MomentumNotes *notes, long block, const vec x
     store3(notes->before + (block * 6 + 3) * SM_LANES, v);
 }
 
-/* Counts what was noted of a body (of all if they are abreast) in the step that is not counted yet,
- * and that x and v are what obstacles have made of it.
- * O(blocks), and some 60 operations a slot of those that were pushed. */
+/* Counts what was noted of a body (of all if they are abreast) in the step that is not counted yet;
+ * x and v are as obstacles have left them. O(blocks), and some 60 operations a slot of those that
+ * were pushed. */
 void momentum_settle(Momentum *m, long body, const double (*origin)[3], const real *x,
                      const real *v, const real gravity[3]);
 
