@@ -441,7 +441,7 @@ static void keep_momentum(SmEngine *e)
 {
     Oct *oct = e->oct;
     bool keeps = oct->params.weighting == OCT_CONSERVING;
-    if (!momentum_due(e->momentum)) return;
+    if (e->divided && !momentum_due(e->momentum)) return;
     if (!keeps) momentum_forget(e->momentum);
     for (long i = 0; i < oct->instances && e->divided && keeps; i++) {
         OctState *b = &oct->body[i];

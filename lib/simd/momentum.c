@@ -20,6 +20,9 @@ enum { VECTORS = MOMENTUM_WAYS / SM_LANES, RUN_LENGTH = 32, RUNS_AT_ONCE = 64 };
  * and the share of the expectation that stays. */
 static const double LEARNT = 0.125, LASTING = 0.97;
 
+/* The share of its spread by which a body may be changed from outside between two times. */
+static const double STRUCK = 0.25;
+
 typedef real RunSum[MOMENTUM_WAYS][SUMS];
 
 Momentum *momentum_build(long blocks, long bodies, bool abreast, int every, int threads)
@@ -394,7 +397,8 @@ void momentum_begin(Momentum *m, long body, const double (*origin)[3], real *x, 
                 p->spin[d] = is.spin[d];
                 p->shift[d] = p->push[d] = p->turn[d] = p->drift[d] = p->twist[d] = 0;
             }
-            p->widest = 0;
+            p->widest = is.spread[0] + is.spread[1] + is.spread[2];
+            p->struck = 0;
             p->since = time > 0 ? m->age : 0;
             if (!(p->sum[ENERGY] == 0)) m->moving = true;
         }
@@ -405,20 +409,20 @@ void momentum_begin(Momentum *m, long body, const double (*origin)[3], real *x, 
 /* A piece's sums have changed by p->sum, `n` steps after it was measured. */
 static void change_piece(MomentumPiece *p, double n, const real gravity[3])
 {
-    double off[2][3], velocity[2][3], moment[2][3];
+    double off[3], velocity[3], by[3], faster[3], moment[2][3];
     for (int d = 0; d < 3; d++) {
-        double fall = (double)gravity[d], by = p->sum[MASS_R + d] / p->mass,
-               faster = p->sum[MASS_V + d] / p->mass;
-        velocity[0][d] = p->velocity[d] + n * fall;
-        velocity[1][d] = velocity[0][d] + faster;
-        off[0][d] = p->place[d] + n * p->velocity[d] + fall * n * (n + 1) / 2 - p->about[d];
-        off[1][d] = off[0][d] + by;
-        p->velocity[d] += faster;
-        p->place[d] += by - n * faster; /* from where it would be here with this velocity */
+        double fall = (double)gravity[d];
+        by[d] = p->sum[MASS_R + d] / p->mass;
+        faster[d] = p->sum[MASS_V + d] / p->mass;
+        off[d] = p->place[d] + n * p->velocity[d] + fall * n * (n + 1) / 2 - p->about[d];
+        p->velocity[d] += faster[d];
+        p->place[d] += by[d] - n * faster[d]; /* from where it would be here with this velocity */
+        velocity[d] = p->velocity[d] + n * fall;
     }
-    for (int i = 0; i < 2; i++) sm_cross(off[i], velocity[i], moment[i]);
+    sm_cross(off, faster, moment[0]); /* what the momentum of the whole changes about `about` */
+    sm_cross(by, velocity, moment[1]);
     for (int d = 0; d < 3; d++)
-        p->spin[d] += p->sum[MOMENT + d] - p->mass * (moment[1][d] - moment[0][d]);
+        p->spin[d] += p->sum[MOMENT + d] - p->mass * (moment[0][d] + moment[1][d]);
 }
 
 void momentum_pushed(Momentum *m, long body, long slot, const MomentumChange *change,
@@ -426,20 +430,22 @@ void momentum_pushed(Momentum *m, long body, long slot, const MomentumChange *ch
 {
     if (!m) return;
     MomentumPiece *p = &m->piece[body * m->pieces + m->label[slot]];
-    double mass = (double)m->mass[slot], r[2][3], u[2][3], moment[2][3];
+    double mass = (double)m->mass[slot], r[3], u[3], moment[2][3];
     memset(p->sum, 0, sizeof p->sum);
     for (int d = 0; d < 3; d++) {
         m->moving |= change->dx[d] != 0 || change->dv[d] != 0;
         p->sum[MASS_R + d] = mass * change->dx[d];
         p->sum[MASS_V + d] = mass * change->dv[d];
-        r[0][d] = change->x[d] - p->about[d];
-        r[1][d] = r[0][d] + change->dx[d];
-        u[0][d] = change->v[d];
-        u[1][d] = u[0][d] + change->dv[d];
+        r[d] = change->x[d] - p->about[d];
+        u[d] = change->v[d] + change->dv[d];
+        p->struck += mass * (change->dx[d] * change->dx[d] + change->dv[d] * change->dv[d]);
     }
-    for (int i = 0; i < 2; i++) sm_cross(r[i], u[i], moment[i]);
-    for (int d = 0; d < 3; d++) p->sum[MOMENT + d] = mass * (moment[1][d] - moment[0][d]);
-    if (is_known(m, p)) change_piece(p, (double)(m->steps + ahead), gravity);
+    sm_cross(r, change->dv, moment[0]);
+    sm_cross(change->dx, u, moment[1]);
+    for (int d = 0; d < 3; d++) p->sum[MOMENT + d] = mass * (moment[0][d] + moment[1][d]);
+    if (!is_known(m, p)) return;
+    change_piece(p, (double)(m->steps + ahead), gravity);
+    if (p->struck > STRUCK * p->widest) momentum_forget(m);
 }
 
 /* What the lanes of a block add to their pieces' sums. `from`: where those are taken about. */
@@ -558,6 +564,7 @@ void momentum_keep(Momentum *m, long body, const double (*origin)[3], real *x, r
             off[d] = next - p->about[d];
         }
         p->widest = fmax(LASTING * p->widest, is.spread[0] + is.spread[1] + is.spread[2]);
+        p->struck = 0;
         bool lasts =
             angular_velocity(is.spread, p->mass, is.spin, n, p->widest, over, p->turn, lost);
         for (int d = 0; d < 3; d++) {

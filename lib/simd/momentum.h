@@ -11,7 +11,9 @@
  *
  * Pieces are measured apart, because each keeps its own momentum. What handles, obstacles, contacts
  * and forces add to it is counted as they add it. Whoever sets positions or velocities says so by
- * momentum_forget(), and begins anew.
+ * momentum_forget(), and begins anew; so does a body that is torn about so that its spread is
+ * another one a step later, because what is too much is taken from it some steps after it was
+ * measured.
  *
  * Lengths are cells, velocities cells per step, as inside an engine. */
 #ifndef SM_MOMENTUM_H
@@ -45,6 +47,7 @@ typedef struct {
     double shift[3], push[3], turn[3];     /* too far, too fast, turning about `about` */
     double drift[3], twist[3];             /* what rounding adds from one time to the next */
     double widest;                         /* largest trace of its spread lately */
+    double struck;                         /* m (dx^2 + dv^2) of what has been moved from outside */
     double sum[MOMENTUM_SUMS];             /* of its particles, while they are measured; of changes
                                             * from outside, while they are counted */
     long since;                            /* the `age` in which these were measured */
@@ -111,10 +114,10 @@ static inline bool momentum_rests(const Momentum *m)
     return m->begun && !m->moving;
 }
 
-/* Counts a step. Is it time to keep the momenta? */
+/* Counts a step, if momenta are known. Is it time to keep them? */
 static inline bool momentum_due(Momentum *m)
 {
-    return ++m->steps >= m->every;
+    return m->begun && ++m->steps >= m->every;
 }
 
 /* Measures one body (all of them if they are abreast), and takes from its particles what was found
