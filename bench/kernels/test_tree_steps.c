@@ -1,7 +1,6 @@
 /* Steps of the octree that are timed: wrong ones are found, and what they do is counted. */
 #include "../../lib/test_frame.h"
 #include "../../octree/operations.h"
-#include "../check/tree_check.h"
 #include "tree_body.h"
 
 /* A cube whose first region has lost a summation node that is not its own. */
