@@ -115,9 +115,8 @@ void lsm_contacts_after(LsmContacts *k, Momentum *momentum)
     for (long i = 0; i < c->node_count; i++) {
         long at = index_of(k, c->node[i]), count = lsm->lattice.count;
         MomentumChange change;
+        lsm_moved_from(lsm, at, &change);
         for (int d = 0; d < 3; d++, at += SM_LANES) {
-            change.x[d] = (double)x[at];
-            change.v[d] = (double)v[at];
             change.dx[d] = change.dv[d] = c->v[i][d];
             v[at] += (real)c->v[i][d];
             x[at] += (real)c->v[i][d];

@@ -366,11 +366,10 @@ static void move_held(SmEngine *e)
             MomentumChange change;
             rest_position(e, number, x0);
             sm_pose_apply((const double(*)[4])e->handles.handle[i].pose, x0, to);
-            for (int d = 0; d < 3; d++) {
-                const double *origin;
-                long index = index_of(e, number, d, &origin);
-                change.x[d] = (double)x[index];
-                change.v[d] = (double)v[index];
+            const double *origin;
+            long index = index_of(e, number, 0, &origin);
+            lsm_moved_from(e->lsm, index, &change);
+            for (int d = 0; d < 3; d++, index += SM_LANES) {
                 x[index] = (real)((to[d] - origin[d]) / e->lsm->cell);
                 v[index] = (real)((to[d] - e->handles.before[at][d]) / e->lsm->cell);
                 change.dx[d] = (double)x[index] - change.x[d];
@@ -567,19 +566,17 @@ static double kilograms(const SmEngine *e, long number)
 
 static void engine_push(SmEngine *e, long count, const long *particle, const double (*impulse)[3])
 {
-    real *x = field_of(e, SM_POSITION), *v = field_of(e, SM_VELOCITY);
+    real *v = field_of(e, SM_VELOCITY);
     for (long i = 0; i < count; i++) {
         assert(particle[i] >= 0 && particle[i] < e->bodies * e->count);
         double scale = e->lsm->params.h / (e->lsm->cell * kilograms(e, particle[i]));
         MomentumChange change;
+        const double *origin;
+        long index = index_of(e, particle[i], 0, &origin);
+        lsm_moved_from(e->lsm, index, &change);
         for (int d = 0; d < 3; d++) {
-            const double *origin;
-            long index = index_of(e, particle[i], d, &origin);
-            change.x[d] = (double)x[index];
-            change.v[d] = (double)v[index];
-            change.dx[d] = 0;
             change.dv[d] = impulse[i][d] * scale;
-            v[index] += (real)change.dv[d];
+            v[index + d * SM_LANES] += (real)change.dv[d];
         }
         long p = inner_of(e, particle[i]);
         momentum_pushed(e->momentum, particle[i] / e->count, e->lsm->slot[p], &change,

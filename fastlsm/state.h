@@ -154,6 +154,16 @@ static inline long place_of(const Lsm *lsm, long body, long p)
     return block * 3 * SM_LANES + (one ? lsm->slot[p] : body) % SM_LANES;
 }
 
+/* What is about to be changed from outside, at place_of() a particle. */
+static inline void lsm_moved_from(const Lsm *lsm, long at, MomentumChange *change)
+{
+    for (int d = 0; d < 3; d++) {
+        change->x[d] = (double)lsm->x[at + d * SM_LANES];
+        change->v[d] = (double)lsm->v[at + d * SM_LANES];
+        change->dx[d] = change->dv[d] = 0;
+    }
+}
+
 /* Of a block; only where there are obstacles: a division takes longer than it looks. */
 SM_INLINE const vec *shift_of(const Lsm *lsm, long block)
 {

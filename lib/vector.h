@@ -63,4 +63,23 @@ static inline bool sm_normalize(double vector[3])
     return usable;
 }
 
+/* Poses [3][4]: a linear map and a displacement. First `inner`, then `outer`. */
+static inline void sm_pose_compose(const double outer[3][4], const double inner[3][4],
+                                   double result[3][4])
+{
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 4; j++) {
+            result[i][j] = j == 3 ? outer[i][3] : 0;
+            for (int k = 0; k < 3; k++) result[i][j] += outer[i][k] * inner[k][j];
+        }
+}
+
+/* Does it turn insides out? */
+static inline bool sm_pose_mirrors(const double pose[3][4])
+{
+    double across[3];
+    sm_cross(pose[0], pose[1], across);
+    return sm_dot(across, pose[2]) < 0;
+}
+
 #endif

@@ -2,11 +2,17 @@
 # sources that it decides about.
 
 # Makes the target `name`, to be linked where the library is used. Where `program` compiles and links
-# with the include folders and libraries given (packages come without their headers, or without what
-# they need), the target carries them, has_<name> is set, and the source of USED_BY is compiled with
+# with the first of PACKAGES that pkg-config knows, and the include folders and libraries given (packages
+# come without their headers, or without what they need), the target carries them, has_<name> is set, and the source of USED_BY is compiled with
 # its definition; else the target is empty and `without` is said.
 function(optional_library name program without)
-  cmake_parse_arguments(PARSE_ARGV 3 of "" "" "INCLUDES;LIBRARIES;USED_BY")
+  cmake_parse_arguments(PARSE_ARGV 3 of "" "" "PACKAGES;INCLUDES;LIBRARIES;USED_BY")
+  if(of_PACKAGES)
+    string(TOUPPER ${name} package)
+    pkg_search_module(${package} QUIET ${of_PACKAGES})
+    list(APPEND of_INCLUDES ${${package}_INCLUDE_DIRS})
+    list(APPEND of_LIBRARIES ${${package}_LINK_LIBRARIES})
+  endif()
   add_library(${name} INTERFACE)
   unset(works CACHE) # try_compile keeps its result there
   if(NOT "${of_INCLUDES};${of_LIBRARIES};" MATCHES "-NOTFOUND;")
@@ -28,7 +34,6 @@ function(optional_library name program without)
   endif()
 endfunction()
 
-pkg_check_modules(CMOCKA QUIET cmocka)
 optional_library(cmocka [[
 #include <stdarg.h>
 #include <stddef.h>
@@ -37,31 +42,28 @@ optional_library(cmocka [[
 #include <cmocka.h>
 int main(void) { return cmocka_run_group_tests((const struct CMUnitTest *)0, 0, 0); }]]
   "No unit tests: no cmocka"
-  INCLUDES ${CMOCKA_INCLUDE_DIRS} LIBRARIES ${CMOCKA_LINK_LIBRARIES})
+  PACKAGES cmocka)
 
-pkg_check_modules(JANSSON QUIET jansson)
 optional_library(jansson [[
 #include <jansson.h>
 int main(void) { return json_error_code(&(json_error_t){0}) + !json_null(); }]]
   "No glTF: no jansson"
-  INCLUDES ${JANSSON_INCLUDE_DIRS} LIBRARIES ${JANSSON_LINK_LIBRARIES}
+  PACKAGES jansson
   USED_BY lib/mesh/read_gltf.c SM_JANSSON)
-pkg_check_modules(ZLIB QUIET zlib)
 optional_library(zlib [[
 #include <zlib.h>
 int main(void) { return !zlibVersion(); }]]
   "No compressed meshes (.gz): no zlib"
-  INCLUDES ${ZLIB_INCLUDE_DIRS} LIBRARIES ${ZLIB_LINK_LIBRARIES}
+  PACKAGES zlib
   USED_BY lib/mesh/reader.c SM_ZLIB)
 set(pc_needs ${JANSSON_LDFLAGS} ${ZLIB_LDFLAGS})
 
 set(sources_of_files other|child)
 if(SHAPEBENCH_CORE)
-  pkg_check_modules(GSL QUIET gsl)
   optional_library(gsl [[
 #include <gsl/gsl_linalg.h>
 int main(void) { return gsl_linalg_SV_decomp_jacobi((gsl_matrix *)0, 0, 0); }]]
-    "No unit tests: no GSL" INCLUDES ${GSL_INCLUDE_DIRS} LIBRARIES ${GSL_LINK_LIBRARIES})
+    "No unit tests: no GSL" PACKAGES gsl)
   if(NOT has_gsl)
     set(has_cmocka OFF)
   endif()
@@ -74,21 +76,19 @@ endif()
 # shapebench.pc.in. Not Requires: a program linked with the shared library needs none of their headers.
 list(APPEND pc_needs ${GSL_LDFLAGS})
 
-pkg_check_modules(ASSIMP QUIET assimp)
 optional_library(assimp [[
 #include <assimp/cimport.h>
 #include <assimp/scene.h>
 int main(void) { return !aiGetErrorString(); }]]
   "No meshes but OBJ, PLY, STL, OFF and glTF: no Assimp"
-  INCLUDES ${ASSIMP_INCLUDE_DIRS} LIBRARIES ${ASSIMP_LINK_LIBRARIES}
+  PACKAGES assimp
   USED_BY bench/system/machine.c SHAPEBENCH_ASSIMP)
 
-pkg_search_module(MPI QUIET mpi-c ompi-c mpich)
 optional_library(mpi [[
 #include <mpi.h>
 int main(void) { return MPI_Init(0, 0); }]]
   "No MPI: 'mpirun shapebench' will refuse"
-  INCLUDES ${MPI_INCLUDE_DIRS} LIBRARIES ${MPI_LINK_LIBRARIES}
+  PACKAGES mpi-c ompi-c mpich
   USED_BY bench/campaign/ranks.c SHAPEBENCH_MPI)
 
 pkg_check_modules(ARPACK QUIET arpack)

@@ -7,6 +7,7 @@
 
 #include "../../lib/printable.h"
 #include "../../lib/system/file.h"
+#include "../system/remark.h"
 #include "checksum.h"
 #include "draft.h"
 
@@ -569,7 +570,8 @@ SmCode bench_h5_load(const char *path, void (*read)(BenchH5 *h5, void *record), 
         return sm_fail(error, SM_INPUT, "cannot use %.200s: %s%.250s", path,
                        checksum ? "damaged, or changed by another program: " : "", h5.message);
     if (checksum)
-        fprintf(stderr, "%s: written to by another program; %s\n", path,
-                h5.unchecked ? "some of its data have no checksums" : "HDF5's own checksums hold");
+        bench_remark("%s: written to by another program; %s", path,
+                     h5.unchecked ? "some of its data have no checksums"
+                                  : "HDF5's own checksums hold");
     return SM_OK;
 }

@@ -49,13 +49,14 @@ static void count(int threads, double each[BENCH_COUNTERS])
 
 TEST(all_threads_count)
 {
+    const double least = 0.9 * WORK; /* a virtual machine's two clocks differ by what is stolen */
     for (int threads = 1; threads <= 3; threads++) {
         double each[BENCH_COUNTERS];
         count(threads, each);
-        assert_true(each[0] >= WORK && each[0] < 100.0 * WORK);
+        assert_true(each[0] >= least && each[0] < 100.0 * WORK);
         assert_true(each[1] >= 0);
         assert_true(isnan(each[2])); /* the others count without it */
-        assert_true(each[3] >= WORK);
+        assert_true(each[3] >= least);
     }
 }
 

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <unistd.h>
 
 #include "../system/file.h"
 
@@ -14,7 +15,9 @@ static bool read_whole_file(const char *path, unsigned char **bytes, size_t *siz
     FILE *file = sm_file_open(path, &length, error);
     if (!file) return false;
     *size = (size_t)length;
-    *bytes = malloc(*size + 1);
+    /* Where the system promises more memory than it has, a file with a hole in it would fill it. */
+    double most = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
+    *bytes = length < most ? malloc(*size + 1) : NULL;
     bool good = *bytes && fread(*bytes, 1, *size, file) == *size;
     fclose(file);
     if (good) return true;

@@ -30,17 +30,14 @@ typedef struct {
     double vertices, faces; /* so far */
 } Import;
 
-static Transform compose_transforms(const Transform *outer, const struct aiMatrix4x4 *m)
+static Transform compose(const Transform *outer, const struct aiMatrix4x4 *m)
 {
-    const ai_real inner[4][4] = {{m->a1, m->a2, m->a3, m->a4},
-                                 {m->b1, m->b2, m->b3, m->b4},
-                                 {m->c1, m->c2, m->c3, m->c4},
-                                 {0, 0, 0, 1}};
-    Transform result = {0};
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 4; j++)
-            for (int k = 0; k < 4; k++) result.row[i][j] += outer->row[i][k] * (double)inner[k][j];
-    return result;
+    const double inner[3][4] = {{(double)m->a1, (double)m->a2, (double)m->a3, (double)m->a4},
+                                {(double)m->b1, (double)m->b2, (double)m->b3, (double)m->b4},
+                                {(double)m->c1, (double)m->c2, (double)m->c3, (double)m->c4}};
+    Transform whole;
+    sm_pose_compose((const double(*)[4])outer->row, inner, whole.row);
+    return whole;
 }
 
 static void write_vertices(const Import *import, const struct aiMesh *mesh, const Transform *t)
@@ -57,9 +54,7 @@ static void write_vertices(const Import *import, const struct aiMesh *mesh, cons
 /* Turns the faces of a mirrored part round. */
 static void write_faces(const Import *import, const struct aiMesh *mesh, const Transform *t)
 {
-    double across[3];
-    sm_cross(t->row[0], t->row[1], across);
-    bool mirrored = sm_dot(across, t->row[2]) < 0;
+    bool mirrored = sm_pose_mirrors((const double(*)[4])t->row);
     for (unsigned f = 0; f < mesh->mNumFaces; f++) {
         const struct aiFace *face = &mesh->mFaces[f];
         unsigned count = face->mNumIndices;
@@ -73,7 +68,7 @@ static void write_faces(const Import *import, const struct aiMesh *mesh, const T
 
 static void walk_nodes(Import *import, const struct aiNode *node, const Transform *outer)
 {
-    Transform transform = compose_transforms(outer, &node->mTransformation);
+    Transform transform = compose(outer, &node->mTransformation);
     for (unsigned m = 0; m < node->mNumMeshes; m++) {
         const struct aiMesh *mesh = import->scene->mMeshes[node->mMeshes[m]];
         if (import->reply && import->of_faces) write_faces(import, mesh, &transform);
@@ -92,10 +87,7 @@ static void write_ply(Import *import, FILE *reply)
     double most = 2e6 + (double)import->file->size;
     walk_nodes(import, import->scene->mRootNode, &identity);
     if (import->faces > most || import->vertices > 3 * most) {
-        fprintf(reply,
-                "%cit uses its parts so often that they make more than %.2g million triangles, "
-                "which a file of its size does not hold: export one of each part",
-                REFUSED, most / 1e6);
+        fprintf(reply, "%c" SM_PARTS_TOO_MANY, REFUSED, most / 1e6);
         return;
     }
     fprintf(reply,

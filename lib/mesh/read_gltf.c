@@ -257,15 +257,9 @@ static double *read_accessor(Gltf *gltf, json_t *object, const char *key, const 
 
 /* ---- transforms */
 
-static Transform compose_nodes(const Transform *outer, const Transform *inner)
+static void compose(const Transform *outer, const Transform *inner, Transform *whole)
 {
-    Transform result = {0};
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 4; j++) {
-            for (int k = 0; k < 3; k++) result.row[i][j] += outer->row[i][k] * inner->row[k][j];
-            if (j == 3) result.row[i][j] += outer->row[i][j];
-        }
-    return result;
+    sm_pose_compose((const double(*)[4])outer->row, (const double(*)[4])inner->row, whole->row);
 }
 
 /* Scales, turns by the quaternion, and moves. */
@@ -307,10 +301,7 @@ static bool check_number(Gltf *gltf, double vertices, double triangles)
     if ((double)mesh->vertex_count + vertices <= 3 * gltf->most &&
         (double)mesh->triangle_count + triangles <= gltf->most)
         return true;
-    return FAIL("it uses its parts so often that they make more than %.2g million "
-                "triangles, which a file of its size does not hold: export one of each "
-                "part",
-                gltf->most / 1e6);
+    return FAIL(SM_PARTS_TOO_MANY, gltf->most / 1e6);
 }
 
 static bool add_gltf_vertices(Gltf *gltf, const Transform *transform, const double *position,
@@ -359,12 +350,11 @@ static bool add_gltf_primitive(Gltf *gltf, json_t *primitive, const Transform *t
         return sm_draft_fail(
             draft, "it uses the extension %.60s, which is not read; export it without", name);
     long vertices, corners, known = draft->mesh.vertex_count;
-    double *position = read_accessor(gltf, attributes, "POSITION", "VEC3", &vertices), across[3];
+    double *position = read_accessor(gltf, attributes, "POSITION", "VEC3", &vertices);
     double *index = indices ? read_accessor(gltf, primitive, "indices", "SCALAR", &corners) : NULL;
     bool good = position && (index || !indices), solid = mode >= TRIANGLES && mode <= FAN;
     if (good && !indices) corners = vertices;
-    sm_cross(transform->row[0], transform->row[1], across);
-    bool mirrored = sm_dot(across, transform->row[2]) < 0;
+    bool mirrored = sm_pose_mirrors((const double(*)[4])transform->row);
     if (good && mode == POINTS) draft->left_out.points += corners;
     if (good && mode != POINTS && !solid)
         draft->left_out.lines += mode == LINES ? corners / 2 : corners - (mode == LINE_STRIP);
@@ -411,8 +401,8 @@ static bool add_instances(Gltf *gltf, json_t *mesh, json_t *attributes, const Tr
     for (long i = 0; i < count && good; i++) {
         const double *of[3];
         for (int k = 0; k < 3; k++) of[k] = value[k] ? value[k] + (k == 1 ? 4 : 3) * i : absent[k];
-        Transform inner = transform_of(of[0], of[1], of[2]),
-                  whole = compose_nodes(transform, &inner);
+        Transform inner = transform_of(of[0], of[1], of[2]), whole;
+        compose(transform, &inner, &whole);
         good = add_mesh(gltf, mesh, &whole);
     }
     sm_free_all(value[0], value[1], value[2]);
@@ -436,7 +426,8 @@ static bool add_gltf_nodes(Gltf *gltf, const json_t *list, const Transform *oute
         if (depth == DEEPEST || json_object_get(node, " "))
             return FAIL("a node is in two others, or in more than %d" SM_AGAIN, DEEPEST);
         json_object_set_new(node, " ", json_true()); /* it was here */
-        Transform whole = compose_nodes(outer, &own);
+        Transform whole;
+        compose(outer, &own, &whole);
         if (index >= 0 && !(mesh = get_item(gltf, "meshes", index))) return false;
         if (mesh && !(instances ? add_instances(gltf, mesh, instances, &whole)
                                 : add_mesh(gltf, mesh, skin ? &identity : &whole)))

@@ -1,5 +1,5 @@
 /* Text of points, one a line: x y z, or x y z nx ny nz and perhaps more, which is not read. A count
- * may come first, and in PWN files normals may follow after all positions. */
+ * may come first; where it is half of the lines, normals follow after all positions (PWN). */
 #include <string.h>
 
 #include "draft.h"
@@ -10,7 +10,7 @@ static bool check_count(SmDraft *draft, double wanted, bool bare)
 {
     double count = (double)draft->mesh.vertex_count;
     if (wanted < 0 || wanted == count) return true;
-    if (!(strstr(draft->file->name, ".pwn") && bare && 2 * wanted == count))
+    if (!bare || 2 * wanted != count)
         return sm_draft_fail(draft,
                              "the first line counts %.17g points, and there are %.17g" SM_AGAIN,
                              wanted, count);

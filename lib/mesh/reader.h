@@ -10,6 +10,11 @@
 
 #include "mesh.h"
 
+/* Of a small file whose parts would take minutes and all memory; how many million triangles. */
+#define SM_PARTS_TOO_MANY                                                                          \
+    "it uses its parts so often that they make more than %.2g million triangles, which a file of " \
+    "its size does not hold: export one of each part"
+
 /* Gives the bytes of a file beside the mesh, a glTF's buffer for instance; `name` is relative to
  * the mesh's folder and comes from the mesh. The caller frees `bytes`. False where there is no
  * `name` in the folder: nothing outside of it may be read. */

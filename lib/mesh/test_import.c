@@ -2,34 +2,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "../test_folder.h"
-#include "import.h"
-
-/* cmocka's assert_float_equal() compares in single precision. */
-static void assert_near(double value, double expected, double tolerance)
-{
-    if (!(fabs(value - expected) <= tolerance)) fail_msg("%.17g is not %.17g", value, expected);
-}
-
-static SmMeshInfo import_info(const char *path)
-{
-    SmMesh mesh;
-    SmError error = {0};
-    if (sm_import(path, NULL, &mesh, NULL, &error) != SM_OK) fail_msg("%s", error.text);
-    SmMeshInfo info = sm_mesh_info(&mesh);
-    sm_mesh_free(&mesh);
-    return info;
-}
-
-static void expect_error(const char *path, const char *part)
-{
-    SmMesh mesh;
-    SmError error = {0};
-    assert_int_equal(sm_import(path, NULL, &mesh, NULL, &error), SM_INPUT);
-    assert_int_equal(strncmp(error.text, path, strlen(path)), 0);
-    if (!strstr(error.text, part)) fail_msg("\"%s\" lacks \"%s\"", error.text, part);
-    assert_null(mesh.position);
-}
+#include "test_meshes.h"
 
 /* An L-shaped prism of n-gons, one with corners on its straight sides. */
 TEST(test_polygons)
@@ -48,15 +21,15 @@ TEST(test_polygons)
 
 TEST(test_unusable_files)
 {
-    expect_error(path_in("missing.obj"), "no such file");
-    expect_error(folder, "is a directory");
-    expect_error("/dev/null", "is a pipe or device");
-    expect_error(write_text("empty.obj", ""), "empty");
-    expect_error(write_text("text.docx", "hello"), "save it as ");
-    expect_error(write_text("nosuffix", "hello"), "save it as ");
-    expect_error(write_text("words.glb", "glTF but not quite"), "");
-    expect_error(write_text("points.xyz", "1 2 3\n"), "run --engine meshless");
-    expect_error(write_text("points.las", "LASF"), "a point format that is not read");
+    expect_error(path_in("missing.obj"), NULL, "no such file");
+    expect_error(folder, NULL, "is a directory");
+    expect_error("/dev/null", NULL, "is a pipe or device");
+    expect_error(write_text("empty.obj", ""), NULL, "empty");
+    expect_error(write_text("text.docx", "hello"), NULL, "save it as ");
+    expect_error(write_text("nosuffix", "hello"), NULL, "save it as ");
+    expect_error(write_text("words.glb", "glTF but not quite"), NULL, "");
+    expect_error(write_text("points.xyz", "1 2 3\n"), NULL, "run --engine meshless");
+    expect_error(write_text("points.las", "LASF"), NULL, "a point format that is not read");
 }
 
 TEST(test_no_permission_to_read)
@@ -64,7 +37,7 @@ TEST(test_no_permission_to_read)
     const char *secret = write_text("secret.obj", "v 0 0 0\n");
     assert_int_equal(chmod(secret, 0), 0);
     needs(access(secret, R_OK) != 0, "this user (root?) may read every file");
-    expect_error(secret, "cannot be opened");
+    expect_error(secret, NULL, "cannot be opened");
 }
 
 /* A glTF file of a tetrahedron whose buffer has that name, and the buffer; its last index is given.
@@ -105,11 +78,11 @@ TEST(no_file_beyond_the_folder_is_read)
     assert_int_equal(import_info(path_in("inner/in.gltf")).triangles, 4);
     assert_int_equal(import_info(path_in("inner/sub.gltf")).triangles, 4);
     snprintf(outer, sizeof outer, "%s/out.gltf", inner);
-    expect_error(outer, "which is not in its folder");
+    expect_error(outer, NULL, "which is not in its folder");
     snprintf(outer, sizeof outer, "%s/link.gltf", inner);
-    expect_error(outer, "which is not in its folder");
+    expect_error(outer, NULL, "which is not in its folder");
     snprintf(outer, sizeof outer, "%s/pipe.gltf", inner);
-    expect_error(outer, "which is not in its folder");
+    expect_error(outer, NULL, "which is not in its folder");
 }
 
 TEST(test_shared_meshes)

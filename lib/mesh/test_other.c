@@ -6,34 +6,7 @@
 #include <unistd.h>
 
 #include "../system/child.h"
-#include "../test_folder.h"
-#include "import.h"
-
-/* cmocka's assert_float_equal() compares in single precision. */
-static void assert_near(double value, double expected, double tolerance)
-{
-    if (!(fabs(value - expected) <= tolerance)) fail_msg("%.17g is not %.17g", value, expected);
-}
-
-static SmMeshInfo import_info(const char *path)
-{
-    SmMesh mesh;
-    SmError error = {0};
-    if (sm_import(path, NULL, &mesh, NULL, &error) != SM_OK) fail_msg("%s", error.text);
-    SmMeshInfo info = sm_mesh_info(&mesh);
-    sm_mesh_free(&mesh);
-    return info;
-}
-
-static void expect_error(const char *path, const SmImportLimits *limits, const char *part)
-{
-    SmMesh mesh;
-    SmError error = {0};
-    assert_int_equal(sm_import(path, limits, &mesh, NULL, &error), SM_INPUT);
-    assert_int_equal(strncmp(error.text, path, strlen(path)), 0);
-    if (!strstr(error.text, part)) fail_msg("\"%s\" lacks \"%s\"", error.text, part);
-    assert_null(mesh.position);
-}
+#include "test_meshes.h"
 
 static int open_descriptors(void)
 {
@@ -123,14 +96,14 @@ TEST(test_unusable_files)
 
 static int body_echo(void *argument, int reply)
 {
-    return !sm_child_write(reply, argument, strlen(argument));
+    return write(reply, argument, strlen(argument)) != (ssize_t)strlen(argument);
 }
 
 static int body_flood(void *argument, int reply)
 {
     static const char block[65536];
     (void)argument;
-    while (sm_child_write(reply, block, sizeof block)) continue;
+    while (write(reply, block, sizeof block) > 0) continue;
     return 0;
 }
 

@@ -78,16 +78,6 @@ static void child(SmChildBody body, void *argument, const SmChildLimits *limits,
     _exit(body(argument, reply));
 }
 
-bool sm_child_write(int reply, const void *bytes, size_t size)
-{
-    for (size_t done = 0; done < size;) {
-        ssize_t wrote = write(reply, (const char *)bytes + done, size - done);
-        if (wrote < 0 && errno != EINTR) return false;
-        if (wrote > 0) done += (size_t)wrote;
-    }
-    return true;
-}
-
 /* Appends what the pipe holds. 1: more may come, 0: end, -1: larger than `most`. */
 static int read_some(int pipe_end, SmChildResult *result, size_t *room, double most)
 {

@@ -42,7 +42,7 @@ typedef struct {
     size_t size;
 } SmChildResult;
 
-/* What the child runs. It writes its reply with sm_child_write(), returns its exit status, 0 for
+/* What the child runs. It writes its reply to a descriptor, returns its exit status, 0 for
  * success and SM_CHILD_NO_MEMORY for lack of memory, and must not call exit(). Its standard
  * streams are /dev/null, its other descriptors closed, its signals at their defaults. */
 typedef int (*SmChildBody)(void *argument, int reply);
@@ -51,8 +51,5 @@ enum { SM_CHILD_NO_MEMORY = 70 };
 
 /* Runs `body` in a child and waits for it, at most limits->seconds. */
 SmChildResult sm_child_run(SmChildBody body, void *argument, const SmChildLimits *limits);
-
-/* Writes all bytes to descriptor `reply`; false when the parent has gone. */
-bool sm_child_write(int reply, const void *bytes, size_t size);
 
 #endif
