@@ -4,8 +4,9 @@
     scripts/brute_force.py FILE...
 
 Written from the papers alone (fastlsm: Rivers and James 2007; octree: Steinemann, Otaduy and Gross 2008), without
-sight of the engines, of reference/ or of check_step.py, so that an error has to be made twice to go unseen. Regions
-are found from the recorded cells or edges, every sum is over a region's members one by one, and rotations are by SVD.
+sight of the engines or of reference/, so that an error has to be made twice to go unseen. Regions are found from the
+recorded cells or edges, every sum is over a region's members one by one, and rotations are by SVD. An octree's stored
+summation nodes must be its regions', and the rest shapes of a plastic body must flow from record to record.
 Prints the largest deviations of goals, positions and velocities in (finest) cells, and how far momentum strays where
 nothing acts from outside. Memory grows with the square of the particles: for some 5,000 a body at most.
 Exit code 0: all within the tolerance printed; 1: not; 2: nothing to compare, or usage; 3: not such a file.
@@ -20,6 +21,10 @@ sys.path.insert(0, str(Path(__file__).resolve().parent / "report"))
 from stored import Unusable, opened  # noqa: E402
 
 LARGE = 1e30  # no number of a run is as large
+
+
+class Differs(Exception):
+    """What is stored beside the steps is not what follows from the cells or edges."""
 
 
 def roundings(group, octree):
@@ -83,17 +88,26 @@ def octree_regions(nodes):
     for (a, b), length in zip(nodes["edge"][:], nodes["length"][:]):
         links[a].append((b, length))
         links[b].append((a, length))
-    members = np.zeros((len(width),) * 2, bool)
+    members, far = np.zeros((len(width),) * 2, bool), np.stack([distances(links, i) for i in range(len(width))])
     for i, w in enumerate(width):
-        far, todo = distances(links, i), list(np.flatnonzero(parent < 0))
+        todo = list(np.flatnonzero(parent < 0))
         while todo:
             j = todo.pop()
-            low, high = far[leaves[j]].min(), far[leaves[j]].max()
+            low, high = far[i, leaves[j]].min(), far[i, leaves[j]].max()
             if low <= w and high <= (1 + nodes.attrs["epsilon"]) * w:
                 members[i, leaves[j]] = True
             elif low <= w:
                 todo += children[j]
-    return {"union": members | members.T, "intersection": members & members.T, "none": members}[word(nodes, "symmetry")]
+    members = {"union": members | members.T, "intersection": members & members.T, "none": members}[word(nodes, "symmetry")]
+    first, stored = nodes["region_first"][:], nodes["summation"][:]
+    whole = np.stack([members[:, below].all(1) for below in leaves], 1)  # [region, tree node]
+    largest = whole & ~np.where(parent >= 0, whole[:, parent], False)
+    for i, row in enumerate(largest):
+        if not np.array_equal(np.flatnonzero(row), stored[first[i]:first[i + 1]]):
+            raise Differs(f"the summation nodes of region {i} are not those of its intervals")
+    if not np.array_equal(np.where(members, far, 0).max(1), nodes["reached"][:]):
+        raise Differs("regions do not reach as far as is stored")
+    return members
 
 
 class Body:
@@ -125,13 +139,29 @@ class Body:
         n = len(at)
         return np.einsum("nij,nj->ni", (self.back @ matrix.reshape(n, 9)).reshape(n, 3, 3), at) + self.back @ vector
 
-    def goals(self, x, plastic=None):
+    def goals(self, x, shape):
+        """Goals, the regions' rotations, and their moments A of octree eq. 10."""
         c = self.centre(x)
-        shape = np.broadcast_to(np.eye(3), (len(x), 3, 3)) if plastic is None else plastic
-        u, _, vt = np.linalg.svd(self.moments(x, self.rest, c, self.c0) @ shape.transpose(0, 2, 1))
+        moments = self.moments(x, self.rest, c, self.c0) @ shape.transpose(0, 2, 1)
+        u, _, vt = np.linalg.svd(moments)
         u[:, :, 2] *= np.sign(np.linalg.det(u @ vt))[:, None]
         turn = u @ vt @ shape
-        return self.average(turn, c - np.einsum("nij,nj->ni", turn, self.c0), x * 0 + self.rest)
+        return self.average(turn, c - np.einsum("nij,nj->ni", turn, self.c0), x * 0 + self.rest), u @ vt, moments
+
+    def flow(self, shape, rotation, moments, creep, most):
+        """The rest shapes that regions keep if they yield, and the stretch of each (octree eq. 10)."""
+        one = np.eye(3)
+        spread = shape @ self.moments(self.rest, self.rest, self.c0, self.c0) @ shape.transpose(0, 2, 1)
+        solid = np.linalg.det(spread) > 1e-6 * (np.trace(spread, axis1=1, axis2=2) / 3)**3  # not nodes in a plane
+        inverse = np.linalg.inv(np.where(solid[:, None, None], spread, one))
+        strain = np.where(solid[:, None, None], rotation.transpose(0, 2, 1) @ moments @ inverse - one, 0)
+        off = shape + creep * strain @ shape - one
+        size = np.linalg.norm(off, axis=(1, 2))
+        kept = one + off * np.minimum(1, most / np.maximum(size, 1e-300))[:, None, None]
+        volume = np.linalg.det(kept)
+        good = solid & (volume > 0.05) & (volume < 20)
+        kept = kept / np.cbrt(np.where(good, volume, 1))[:, None, None]
+        return np.where(good[:, None, None], kept, shape), np.linalg.norm(strain, axis=(1, 2))
 
     def rigid(self, x, v):
         """Velocities of the regions' rigid motions, averaged for each particle."""
@@ -180,9 +210,11 @@ def check(file):
     damping, every = group.attrs["damping"], max(1, group.attrs["damping_every"])
     gravity, held, steps = group.attrs["gravity"], group["held"][:].astype(bool), group["step"][:]
     obstacles = group["obstacles"][:] if "obstacles" in group else []
-    size = np.linalg.norm(body.rest, axis=1).max()
-    allowed = roundings(group, octree) * np.finfo(precision).eps / 2 * size / cell
+    size, far = np.linalg.norm(body.rest, axis=1).max(), np.abs(group["x"][0]).max(initial=0)
+    allowed = (roundings(group, octree) * np.finfo(precision).eps / 2 * size + 8e-16 * min(far, LARGE)) / cell
     worst = dict.fromkeys(("goals", "x", "v", "momentum", "spin"), 0.0)
+    if "S" in group:
+        worst["S"] = np.abs(group["S"][0].reshape(-1, 3, 3) - np.eye(3)).max() if steps[0] == 0 else 0
     count = dict.fromkeys(("compared", "pushed", "pressed"), 0)
     for k in range(len(steps) - 1):
         if steps[k + 1] != steps[k] + 1:
@@ -196,8 +228,16 @@ def check(file):
             middle = record["x"][0, here].mean(0)  # far from the origin the sums would cancel
             x, x1, v0, v1 = (record[name][j, here] for name, j in (("x", 0), ("x", 1), ("v", 0), ("v", 1)))
             x, x1, free = x - middle, x1 - middle, ~held[here]
-            plastic = group["S"][k, here].reshape(n, 3, 3) if "S" in group else None
-            g = body.goals(x, plastic)
+            shape, next_ = (group["S"][j, here].reshape(n, 3, 3) if "S" in group else np.tile(np.eye(3), (n, 1, 1))
+                            for j in (k, k + 1))
+            g, rotation, moments = body.goals(x, shape)
+            if "S" in group:
+                creep = h * group.attrs["creep"]
+                flowed, stretch = body.flow(shape, rotation, moments, creep, group.attrs["most"])
+                stays, flows = (np.abs(next_ - to).max((1, 2)) / max(1, creep) for to in (shape, flowed))
+                over = stretch - group.attrs["yield"]  # at the yield to rounding it may or may not flow
+                worst["S"] = max(worst["S"], np.where(np.abs(over) <= allowed, np.minimum(stays, flows),
+                                                      np.where(over > 0, flows, stays)).max())
             # What is held takes part in damping as if it were free, and then follows its handle; the papers are silent.
             v = v0 + (g - x) / h + h * gravity
             if damping and steps[k] % every == 0:
@@ -206,7 +246,7 @@ def check(file):
             apart = outside(obstacles, x2 + middle) > 1e-4 * cell
             good, off = free & apart, np.abs(x2 - x1).max(1) / cell
             drift = np.abs(v - v1).max(1) * h / cell
-            pushed = good & (drift > allowed) & (off <= allowed)
+            pushed = good & (drift > allowed) & (off <= allowed) & np.isfinite(record["g"][1, here]).all(1)
             for name, deviation in (("goals", np.abs(g - (record["g"][0, here] - middle)).max(1) / cell),
                                     ("x", off[good]), ("v", drift[good & ~pushed])):
                 worst[name] = max(worst[name], np.nan_to_num(deviation, nan=np.inf).max(initial=0))
@@ -241,9 +281,9 @@ def main(paths):
         try:
             with opened(path) as file:
                 allowed, worst, count = check(file)
-        except Unusable as error:
+        except (Unusable, Differs) as error:
             print(f"brute_force: {error}", file=sys.stderr)
-            codes.add(3)
+            codes.add(3 if isinstance(error, Unusable) else 1)
             continue
         fits = not beyond(allowed, worst)
         print(path, "within" if fits else "OFF", f"{allowed:.2g}:", told(worst, count))

@@ -51,7 +51,7 @@ target_link_libraries(store_body PRIVATE shapebench_flags shapebench_engines sha
 set(scripts_folder ${CMAKE_INSTALL_DATADIR}/shapebench)
 install(TARGETS shapebench)
 install(PROGRAMS scripts/build_revision scripts/plot_sweep.py scripts/plot_slice.py scripts/plot_map.py
-  scripts/plot_calibration.py scripts/render.py scripts/check_step.py DESTINATION ${scripts_folder})
+  scripts/plot_calibration.py scripts/render.py scripts/brute_force.py DESTINATION ${scripts_folder})
 install(FILES scripts/plots.py DESTINATION ${scripts_folder})
 install(FILES results/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/results) # has readers of the files
 install(FILES results/page.html DESTINATION ${scripts_folder}) # reports have it, and pictures on their cards

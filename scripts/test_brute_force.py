@@ -78,17 +78,6 @@ def unnoticed(path):
             group[name][1, free] = kept
 
 
-def thin_regions(program, folder):
-    """What check_step.py has against the whole hand, whose fingers have regions of nodes nearly on a line. They are
-    damped by the engine's rule; by eq. 14 alone three nodes are 3e-4 cells off, and were left out."""
-    whole = argparse.Namespace(particles=35000, frames=6, precision="single")
-    path, said = record(program, "hand-sampled", 'engine = "octree"', whole, folder)
-    done = subprocess.run([sys.executable, Path(__file__).with_name("check_step.py"), path], capture_output=True,
-                          text=True)
-    print("hand-sampled, whole:", said, done.stdout.strip().replace("\n", "; "))
-    return ["check_step.py: " + done.stdout + done.stderr] if done.returncode or "left out" in done.stdout else []
-
-
 def main():
     parser = argparse.ArgumentParser(usage=__doc__)
     parser.add_argument("program")
@@ -112,8 +101,6 @@ def main():
             wrong = judge(scene, text, path) + [said] * bool(said)
             if scene in ("penguin", "hand-sampled"):
                 wrong += [f"{name} altered by {by} cells goes unnoticed" for name, by in unnoticed(path)]
-            if scene == "hand-sampled":
-                wrong += thin_regions(options.program, folder)
             for line in wrong:
                 print(f"{scene}: WRONG: {line}")
             failed |= bool(wrong)

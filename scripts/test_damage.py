@@ -54,8 +54,8 @@ READ = {  # file: what reads it; @ is the file, ! a new name
                      ["PROGRAM", "report", "-o", "!.html", "@"]],
     "slice.h5": [["plot_slice.py", "@", "-o", "!.png"]],
     "map.h5": [["plot_map.py", "@", "-o", "!.png"]],
-    "particles.vtkhdf": [["check_step.py", "@"], ["brute_force.py", "@"]],
-    "nodes.vtkhdf": [["check_step.py", "@"], ["brute_force.py", "@"]],
+    "particles.vtkhdf": [["brute_force.py", "@"]],
+    "nodes.vtkhdf": [["brute_force.py", "@"]],
 }
 FINE = {0, 1, 2, 3}  # documented, of readers: done, a check failed, nothing to compare or no such scene, unusable
 

@@ -28,7 +28,7 @@ ELSEWHERE = {
     r"for |scripts/render.py .*\{": "whoever makes the pictures anew; scripts/test_render.sh",
     r"scripts/publish|scripts/view/pictures|scripts/test|scripts/setup": "CI, or whoever publishes",
     r"mpirun": "bench/sweep/test_sweep_run.c",
-    r"scripts/check_step.py|scripts/brute_force.py": "scripts/test_brute_force.py, bench/play/test_step_record.c",
+    r"scripts/brute_force.py": "scripts/test_brute_force.py, bench/play/test_step_record.c",
     r"scripts/check_|scripts/readme.py": "by hand",
     r"scripts/baselines.py": "scripts/test_baselines.py",
     r"cmake|cc |export ": "scripts/test_install.sh",

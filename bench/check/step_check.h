@@ -24,8 +24,7 @@ double bench_check_motion(const BenchRunner *runner);
  * decides alone which of the two a region is where 1 / tr(I^-1) is between half of the rule's bound
  * and four times that. Those regions' particles, and those that the check of goals leaves out, may
  * be as far off as the whole of damping moves them, 2 k; but they are left out, counted, and their
- * error is given only if the step takes them elsewhere by more than bench_check_step().
- * scripts/check_step.py has the same rule for recorded steps. */
+ * error is given only if the step takes them elsewhere by more than bench_check_step(). */
 void bench_check_damping(const BenchCheck *check, const BenchScene *scene, const SmEngineType *type,
                          SmEngine *engine, BenchDeviation *found);
 

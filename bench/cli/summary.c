@@ -38,7 +38,7 @@ static bool print_deviation(const BenchRunner *runner)
     printf("deviation: %s\n", text);
     if (check.hierarchical && check.octree.creep > 0)
         printf("deviation: of the rest shapes as they are; how they flowed is checked by 'tables', "
-               "and the flow by scripts/check_step.py after --record nodes\n");
+               "and the flow by scripts/brute_force.py after --record nodes\n");
     bench_check_free(&check);
     if (bench_check_verdict(&found, sizeof reason, reason) &&
         (found.plain ||

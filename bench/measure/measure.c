@@ -98,6 +98,7 @@ void bench_row_name(const BenchScene *scene, BenchRow *row)
     snprintf(row->engine, sizeof row->engine, "%s", scene->engine);
     strcpy(row->polar, bench_polars[scene->params.polar]);
     strcpy(row->summation, bench_summations[scene->params.summation]);
+    bench_scene_said(scene, sizeof row->settings, row->settings);
 }
 
 static void name_row(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,

@@ -32,8 +32,39 @@ static int values(const BenchCompareParams *params)
     return params->by_cycles ? 1 : BENCH_TIMES;
 }
 
+/* Of settings "key = value; ...". */
+static const char *next_setting(const char *said)
+{
+    said += strcspn(said, ";");
+    return said + strspn(said, "; ");
+}
+
+/* Behind the key's "=". */
+static const char *value_of_setting(const char *said, const char *key, size_t length)
+{
+    while (*said && strncmp(said, key, length) != 0) said = next_setting(said);
+    return *said ? said + length : " the default;";
+}
+
+/* Have both the value of each setting that `said` has? If not, what the first one is in both. */
+static bool same_settings(const char *said, const char *old, const char *new, size_t size,
+                          char *reason)
+{
+    for (; *said; said = next_setting(said)) {
+        size_t length = strcspn(said, "=") + 1;
+        const char *before = value_of_setting(old, said, length);
+        const char *now = value_of_setting(new, said, length);
+        size_t value = strcspn(before, ";");
+        if (!strncmp(before, now, value + 1)) continue;
+        snprintf(reason, size, "other work: %.*s%.*s, now%.*s", (int)length, said, (int)value,
+                 before, (int)strcspn(now, ";"), now);
+        return false;
+    }
+    return true;
+}
+
 /* Are they of the same work: engine, precision, instruction set unless it may be any, mesh,
- * particles, w and so on? If not, what differs, and both. What an old file does not state
+ * particles, settings? If not, what differs, and both. What an old file does not state
  * (row_store.h) is not judged. */
 static bool same_work(const BenchRow *a, const BenchRow *b, bool any_isa, size_t size, char *reason)
 {
@@ -48,24 +79,28 @@ static bool same_work(const BenchRow *a, const BenchRow *b, bool any_isa, size_t
         {"epsilon", a->epsilon, b->epsilon, isfinite(a->epsilon)},
         {"h", a->h, b->h, isfinite(a->h)},
     };
-    if (a->engine[0] && strcmp(a->engine, b->engine) != 0) {
-        snprintf(reason, size, "other work: engine %s, now %s", a->engine, b->engine);
-        return false;
-    }
-    if (a->precision[0] && strcmp(a->precision, b->precision) != 0) {
-        snprintf(reason, size, "other work: precision %s, now %s", a->precision, b->precision);
-        return false;
-    }
-    if (!any_isa && a->isa[0] && b->isa[0] && strcmp(a->isa, b->isa) != 0) {
-        snprintf(reason, size, "other work: kernels of %s, now %s (--isa)", a->isa, b->isa);
-        return false;
-    }
+    const struct {
+        const char *what, *old, *new, *remedy;
+    } name[] = {
+        {"engine", a->engine, b->engine, ""},
+        {"precision", a->precision, b->precision, ""},
+        {"kernels of", any_isa ? "" : a->isa, b->isa, " (--isa)"},
+    };
+    for (size_t i = 0; i < sizeof name / sizeof *name; i++)
+        if (*name[i].old && *name[i].new &&strcmp(name[i].old, name[i].new) != 0) {
+            snprintf(reason, size, "other work: %s %s, now %s%s", name[i].what, name[i].old,
+                     name[i].new, name[i].remedy);
+            return false;
+        }
     for (size_t i = 0; i < sizeof number / sizeof *number; i++)
         if (number[i].stated && number[i].old != number[i].new) {
             snprintf(reason, size, "other work: %s %.9g, now %.9g", number[i].what, number[i].old,
                      number[i].new);
             return false;
         }
+    bool stated = *a->settings && *b->settings;
+    if (stated && !same_settings(a->settings, a->settings, b->settings, size, reason)) return false;
+    if (stated && !same_settings(b->settings, a->settings, b->settings, size, reason)) return false;
     if (!a->input_hash || a->input_hash == b->input_hash) return true;
     snprintf(reason, size, "other work: the mesh is another one");
     return false;

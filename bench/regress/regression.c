@@ -66,33 +66,51 @@ void bench_regression_environment(BenchRegression *found)
                                 old->git_commit);
 }
 
-/* The one to name: the first that is INVALID, else the one that is slowest; NULL: neither. */
-static const BenchComparison *find_worst(const BenchRegression *found)
+/* The one to name: the first that is INVALID, else the slowest of those that are slower, of totals
+ * (`stages`: of a scene's stages); NULL: none. */
+static const BenchComparison *find_worst(const BenchRegression *found, bool stages)
 {
     const BenchComparison *slowest = NULL;
     for (int i = 0; i < found->count; i++) {
         const BenchComparison *one = &found->list[i];
         if (one->verdict == BENCH_INCORRECT) return one;
-        if (one->verdict == BENCH_SLOWER && (!slowest || one->ratio > slowest->ratio))
+        bool stage = one->value > 0 && one->value < BENCH_TIMES;
+        if (one->verdict == BENCH_SLOWER && stage == stages &&
+            (!slowest || one->ratio > slowest->ratio))
             slowest = one;
     }
     return slowest;
+}
+
+/* The step first: what is slower in a stage alone may be nothing of it. */
+static void name_slowest(const BenchRegression *found, size_t size, char *line)
+{
+    const BenchComparison *stage = find_worst(found, true), *total = find_worst(found, false);
+    for (int i = 0; stage && !total && i < found->count; i++)
+        if (found->list[i].samples == stage->samples && !found->list[i].value)
+            total = &found->list[i];
+    if (total)
+        sm_append(line, size, ", most in %s %s: %.3f times (%.3f to %.3f)", total->samples->scene,
+                  bench_value_name(total->samples, total->value), total->ratio, total->low,
+                  total->high);
+    if (stage)
+        sm_append(line, size, "%s %s %s: %.3f times", total ? ", of stages" : ", most in",
+                  stage->samples->scene, bench_value_name(stage->samples, stage->value),
+                  stage->ratio);
 }
 
 void bench_regression_summary(const BenchRegression *found, size_t size, char *line)
 {
     int had[BENCH_COMPARISONS] = {0};
     for (int i = 0; i < found->count; i++) had[found->list[i].verdict]++;
-    const BenchComparison *worst = find_worst(found);
     const char *of = found->params->by_cycles ? "scenes" : "times";
-    if (worst && worst->verdict == BENCH_INCORRECT)
+    if (had[BENCH_INCORRECT]) {
+        const BenchComparison *worst = find_worst(found, false);
         snprintf(line, size, "INVALID: %s: %s", worst->samples->scene, worst->reason);
-    else if (worst)
-        snprintf(line, size, "SLOWER in %d of %d %s, most in %s %s: %.3f times (%.3f to %.3f)",
-                 had[BENCH_SLOWER], found->count, of, worst->samples->scene,
-                 bench_value_name(worst->samples, worst->value), worst->ratio, worst->low,
-                 worst->high);
-    else if (found->count == had[BENCH_NO_BASELINE])
+    } else if (had[BENCH_SLOWER]) {
+        snprintf(line, size, "SLOWER in %d of %d %s", had[BENCH_SLOWER], found->count, of);
+        name_slowest(found, size, line);
+    } else if (found->count == had[BENCH_NO_BASELINE])
         snprintf(line, size, "no baseline: nothing could be compared");
     else if (had[BENCH_SAME] + had[BENCH_FASTER] == 0)
         snprintf(line, size, "no verdict on any of %d %s", found->count, of);
@@ -220,11 +238,22 @@ static void write_outliers(FILE *file, const BenchRegression *found, int first, 
     if (any) fputc('\n', file);
 }
 
+/* What is surely other, and by less than is called so. */
+static void write_small(FILE *file, const BenchComparison *one, const char *bullet)
+{
+    bool total = !one->value || one->value >= BENCH_TIMES;
+    if (!total || one->verdict != BENCH_SAME || (one->low <= 1 && one->high >= 1)) return;
+    fprintf(file, "%s%s: %s %.1f%% %s, below the threshold of %.1f%%\n", bullet,
+            one->samples->scene, bench_value_name(one->samples, one->value),
+            100 * fabs(one->ratio - 1), one->ratio > 1 ? "slower" : "faster", 100 * one->threshold);
+}
+
 static void write_remarks(FILE *file, const BenchRegression *found, const char *bullet)
 {
     for (int i = 0; i < found->count; i++) {
         const BenchComparison *one = &found->list[i];
         if (one->reason[0]) fprintf(file, "%s%s: %s\n", bullet, one->samples->scene, one->reason);
+        write_small(file, one, bullet);
         if (i == 0 || found->list[i - 1].samples != one->samples)
             write_outliers(file, found, i, bullet);
     }

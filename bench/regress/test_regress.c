@@ -188,6 +188,15 @@ TEST(beside_a_stored_file)
     store("other.h5", &row, &machine);
     expect("shapebench regress --baseline other.h5 --rounds 1 " TINY, 6,
            "other work: particles 63, now 64");
+    row.particles = 64;
+    strcat(row.settings, "octree.levels = 3; ");
+    store("other.h5", &row, &machine);
+    expect("shapebench regress --baseline other.h5 --rounds 1 " TINY, 6,
+           "other work: octree.levels = 3, now the default");
+    strcpy(row.settings, "particles = 64; engine = brute; bend = 0.3; ");
+    store("other.h5", &row, &machine);
+    expect("shapebench regress --baseline other.h5 --rounds 1 " TINY, 6,
+           "other work: w = the default, now 1");
     row.valid = false;
     strcpy(row.reason, "goals are off");
     store("invalid.h5", &row, &machine);
@@ -245,6 +254,14 @@ TEST(two_files_side_by_side)
     assert_non_null(strstr(result.out, "processor differs: "));
     assert_non_null(strstr(result.out, "instruction set differs: "));
     expect("shapebench regress slow.h5 old.h5 --threshold 0.1", 0, "faster");
+    for (int r = 0; r < row.repeats; r++) row.stage[r][SM_SHAPE_MATCHING] *= 4;
+    store("stage.h5", &row, &machine);
+    expect("shapebench regress old.h5 stage.h5 --threshold 0.1", 5, "most in tiny total: 1.250 ");
+    expect("shapebench regress old.h5 stage.h5 --threshold 0.1", 5,
+           "), of stages tiny shape_matching: 4.000 times\n");
+    expect("shapebench regress old.h5 stage.h5 --threshold 0.3", 5,
+           "tiny: total 25.0% slower, below the threshold of 30.0%\n");
+    expect("shapebench regress old.h5 stage.h5 --threshold 0.3", 5, "most in tiny total: 1.250 ");
     expect("shapebench regress old.h5 slow.h5 --scene hand", 6, "neither file has the scene hand");
     expect("shapebench regress old.h5 slow.h5 --format json", 5, "\"stored\": \"slow.h5\"");
     expect("shapebench regress old.h5 old.h5 --scene tiny.cfg", 0, "not slower in ");

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "../../lib/printable.h"
+#include "../../lib/system/hash.h"
 #include "../../reference/meshless/surface/points.h"
 #include "../engines.h"
 #include "../settings/config_file.h"
@@ -208,6 +209,33 @@ SmCode bench_scene_parse(const char *text, size_t size, const char *file, BenchS
     if (!code) *scene = read->scene;
     free(read);
     return code;
+}
+
+void bench_scene_said(const BenchScene *scene, size_t size, char *text)
+{
+    BenchSceneFile *said = sm_alloc(1, sizeof *said), *usual = sm_alloc(1, sizeof *usual);
+    SmObstacle *const of[] = {said->plane, said->ball, said->box, said->capsule};
+    int *const count[] = {&said->planes, &said->balls, &said->boxes, &said->capsules};
+    char *all;
+    size_t length;
+    FILE *file = open_memstream(&all, &length);
+    bench_scene_init(&usual->scene);
+    said->scene = *scene;
+    for (int i = 0; i < scene->obstacle_count; i++) {
+        SmObstacleKind kind = scene->obstacle[i].kind;
+        of[kind][(*count[kind])++] = scene->obstacle[i];
+    }
+    char *const elsewhere[] = {said->scene.title, said->scene.paper, said->scene.row,
+                               said->scene.mesh, said->scene.vertex_mass};
+    for (int i = 0; i < 5; i++) *elsewhere[i] = '\0';
+    bench_settings_said(file, bench_scene_settings, "", said, usual);
+    fclose(file);
+    if (length >= size)
+        snprintf(all + size - 32, 32, "; all = %016llx; ",
+                 sm_hash_bytes(SM_HASH_START, all, length));
+    strcpy(text, all);
+    free(all);
+    sm_free_all(said, usual);
 }
 
 /* A mesh or mass path in a scene file is relative to that file. */

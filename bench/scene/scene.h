@@ -138,6 +138,10 @@ void bench_scene_init(BenchScene *scene);
 SmCode bench_scene_parse(const char *text, size_t size, const char *file, BenchScene *scene,
                          SmError *error);
 
+/* "damping = 0.1; planes[0].point = [0, 0, 0]; ": what it says that is not the default, whatever it
+ * and its mesh are called; if that is longer, the beginning and a hash of all. */
+void bench_scene_said(const BenchScene *scene, size_t size, char *text);
+
 /* Text of a built-in scene's file (and its size, unless NULL), or NULL. */
 const char *bench_scene_text(const char *name, size_t *size);
 

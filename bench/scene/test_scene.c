@@ -48,6 +48,19 @@ TEST(reads_every_kind_of_setting)
     assert_int_equal(scene.instances, 1);
     assert_int_equal(scene.steps_per_frame, 4);
     assert_true(scene.params.strain_limit == 0 && scene.kick == 0);
+    char said[2048], shortened[64];
+    bench_scene_said(&scene, sizeof said, said);
+    assert_string_equal(
+        said,
+        "fill = shell; particles = 100; engine = brute; w = 3; h = 1; damping = 0.25; "
+        "gravity = [0, -9.81, 0]; summation = naive; polar = jacobi; handles[0].box_high = [1, "
+        "0.5, 1]; handles[0].axis = [0, 0, 1]; handles[0].rate = 1.5; handles[0].stop = 2; "
+        "handles[0].release = true; handles[1].sphere_centre = [0, 1, 0]; handles[1].sphere_radius "
+        "= 0.2; planes[0].point = [0, -1, 0]; planes[0].normal = [0, 0.6, 0.8]; planes[0].friction "
+        "= 0.5; spheres[0].centre = [1, 2, 3]; spheres[0].radius = 4; ");
+    bench_scene_said(&scene, sizeof shortened, shortened);
+    assert_memory_equal(shortened, said, 32);
+    assert_memory_equal(shortened + 32, "; all = ", 8);
 }
 
 TEST(an_octree_has_a_group_of_settings)

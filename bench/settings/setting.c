@@ -226,6 +226,54 @@ void bench_settings_document(FILE *file, const BenchSetting *table, const void *
     }
 }
 
+/* ---- what a record says */
+
+static void print_value(FILE *file, const BenchSetting *setting, const void *place)
+{
+    const double *real = place;
+    if (setting->kind == BENCH_SET_CHOICE)
+        fputs(bench_setting_choices(setting)[*(const unsigned *)place - (unsigned)setting->low],
+              file);
+    else if (setting->kind == BENCH_SET_BOOL)
+        fputs(*(const bool *)place ? "true" : "false", file);
+    else if (setting->kind == BENCH_SET_REAL)
+        fprintf(file, "%.15g", *real);
+    else if (setting->kind == BENCH_SET_VECTOR)
+        fprintf(file, "[%.15g, %.15g, %.15g]", real[0], real[1], real[2]);
+    else if (setting->kind == BENCH_SET_LONG)
+        fprintf(file, "%ld", *(const long *)place);
+    else if (setting->kind == BENCH_SET_INT)
+        fprintf(file, "%d", *(const int *)place);
+    else
+        fputs(setting->kind == BENCH_SET_NAME ? *(const char *const *)place : place, file);
+}
+
+static bool same_value(const BenchSetting *setting, const char *a, const char *b)
+{
+    return setting->kind == BENCH_SET_TEXT ? !strcmp(a, b) : !memcmp(a, b, setting->size);
+}
+
+void bench_settings_said(FILE *file, const BenchSetting *table, const char *within,
+                         const void *record, const void *defaults)
+{
+    static const char zeros[1024]; /* an item of a list by default */
+    for (; !bench_setting_ends(table); table++) {
+        const char *place = (const char *)record + table->offset;
+        const char *usual = (const char *)defaults + table->offset;
+        bool list = table->kind == BENCH_SET_LIST;
+        int items = list ? *(const int *)(const void *)((const char *)record + table->count) : 1;
+        char key[128];
+        for (int i = 0; i < items && table->table; i++, place += table->size) {
+            snprintf(key, sizeof key, list ? "%s%s[%d]." : "%s%s.", within, table->key, i);
+            bench_settings_said(file, table->table, key, place, list ? zeros : usual);
+        }
+        if (table->table || same_value(table, place, usual)) continue;
+        fprintf(file, "%s%s = ", within, table->key);
+        print_value(file, table, place);
+        fputs("; ", file);
+    }
+}
+
 /* ---- options for a struct that is still to be made */
 
 const char *bench_given(const BenchGiven *given, const char *option)

@@ -138,6 +138,11 @@ SmCode bench_setting_text(const BenchSetting *setting, const char *text, void *r
 void bench_settings_document(FILE *file, const BenchSetting *table, const void *defaults,
                              int indent);
 
+/* "damping = 0.1; handles[0].axis = [0, 1, 0]; ": what the record, whose keys stand behind `within`
+ * (""), says that is not as in `defaults`; items of lists by default are all 0. */
+void bench_settings_said(FILE *file, const BenchSetting *table, const char *within,
+                         const void *record, const void *defaults);
+
 /* The value that was given to this option, or NULL. */
 const char *bench_given(const BenchGiven *given, const char *option);
 

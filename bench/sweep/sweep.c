@@ -181,20 +181,6 @@ static void reduce(Sweeper *sweeper)
     scene->instances = 1;
 }
 
-/* Of all settings, wherever the scene and its mesh lie. */
-static unsigned long long hash_scene(const BenchScene *scene)
-{
-    BenchScene *copy = sm_alloc(1, sizeof *copy);
-    memcpy(copy, scene, sizeof *copy);
-    memset(copy->file, 0, sizeof copy->file);
-    memset(copy->mesh, 0, sizeof copy->mesh);
-    memset(copy->name, 0, sizeof copy->name);
-    memset(copy->title, 0, sizeof copy->title);
-    unsigned long long hash = sm_hash_bytes(SM_HASH_START, copy, sizeof *copy);
-    free(copy);
-    return hash;
-}
-
 static SmCode load(const BenchPlan *plan, BenchScene *scene, SmMesh *mesh, SmError *error)
 {
     if (plan->file[0]) {
@@ -220,7 +206,9 @@ static SmCode begin(BenchCampaign *campaign, const BenchCampaignRun *run, void *
     if (!code) code = bench_push_find(&sweeper->scene, &sweeper->body, &sweeper->push, error);
     if (code) return code;
     snprintf(plan->scene, sizeof plan->scene, "%s", sweeper->scene.name);
-    plan->scene_hash = hash_scene(&sweeper->scene);
+    char said[4096];
+    bench_scene_said(&sweeper->scene, sizeof said, said);
+    plan->scene_hash = sm_hash_bytes(SM_HASH_START, said, strlen(said));
     plan->mesh_hash = sweeper->body.hash;
     plan->steps = sweeper->scene.steps_per_frame;
     plan->size = bench_body_size(&sweeper->body);
