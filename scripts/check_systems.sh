@@ -14,6 +14,7 @@ columns=(scripts/run view scripts/test package wheel "stored files")
 declare -A cells # "RELEASE COLUMN": ok or FAILED
 count=0 status=0 running='' left_out='scripts/test quick' logs=$root/build-systems
 export mirror=${MIRROR:-http://deb.debian.org/debian} components=${COMPONENTS:-main}
+unset COMPONENTS # debootstrap has one of its own
 sweep='scripts/run sweep --scene penguin --engine fastlsm --w 1:4 --frames 5 --block 100 -o stored/sweep.h5'
 
 # make_root RELEASE FOLDER: makes a minimal root that knows localhost, and a copy of it for the package; puts the clone,
