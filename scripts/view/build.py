@@ -18,7 +18,7 @@ import sys
 import urllib.parse
 
 HERE = pathlib.Path(__file__).resolve().parent
-LICENCES = ('libconfig/COPYING.LIB', 'jansson/LICENSE', 'zlib/LICENSE',
+LICENCES = ('libconfig/COPYING.LIB', 'jansson/LICENSE', 'zlib/README',
             'suitesparse/AMD/Doc/License.txt', 'suitesparse/COLAMD/Doc/License.txt')
 
 
