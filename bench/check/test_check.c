@@ -523,3 +523,32 @@ TEST(what_is_not_resolved_is_compared)
         plate_free(&strip);
     }
 }
+
+/* What decides a verdict, a little below its bound and a little above. */
+TEST(every_bound_has_two_sides)
+{
+    static const char *const precisions[] = {"single", "double"};
+    static const double goals[] = {5e-5, 1e-10}, steps[] = {1e-4, 1e-9};
+    char reason[160];
+    for (int i = 0; i < 2; i++) {
+        assert_true(bench_check_tolerance(precisions[i]) == goals[i]);
+        assert_true(bench_check_step(precisions[i]) == steps[i]);
+    }
+    assert_true(bench_check_keeps(0.99e-6, sizeof reason, reason));
+    assert_false(bench_check_keeps(1.01e-6, sizeof reason, reason));
+    for (int side = 0; side < 2; side++) {
+        const BenchDeviation found = {
+            .finite = true, .goal_tolerance = 1, .damping_tolerance = 1, .particles = 1000};
+        BenchDeviation of[7];
+        double by = side ? 1.01 : 0.99;
+        for (int i = 0; i < 7; i++) of[i] = found;
+        of[0].goal_error = by;
+        of[1].damping_error = by;
+        of[2].turn_error = 5e-4 * by;
+        of[3].tied = 250 + side;
+        of[4].parted_wrong = of[5].contacts_wrong = of[6].pushed_wrong = side;
+        for (int i = 0; i < 7; i++)
+            if (bench_check_verdict(&of[i], sizeof reason, reason) == side)
+                fail_msg("%d: %s", i, side ? "above, and good" : reason);
+    }
+}

@@ -7,6 +7,7 @@
 #include "../../lib/test_folder.h"
 #include "../../lib/test_frame.h"
 #include "../system/statistic.h"
+#include "ab_runner.h"
 #include "regression.h"
 
 enum { REPEATS = 20 };
@@ -483,6 +484,40 @@ TEST(cycles_are_written_as_such)
                      1) < 0.02);
     assert_true(json_number_value(json_object_get(old, "instructions")) == 3e6);
     json_decref(root);
+}
+
+/* Each build is first in every other round: what drifts meets both alike. */
+TEST(rounds_are_mirrored)
+{
+    for (int round = 0; round < 4; round++)
+        for (int turn = 0; turn < 4; turn++)
+            assert_int_equal(bench_ab_turn(round, turn),
+                             "OnnOnOOn"[4 * (round % 2) + turn] == 'O' ? BENCH_OLD : BENCH_NEW);
+}
+
+/* A verdict needs all three: p for as many comparisons, the threshold, an interval without 1. */
+TEST(no_verdict_by_one_of_three)
+{
+    const BenchCompareParams params = {true, 8, NAN, 1, false, false};
+    int seen[2] = {0};
+    for (int trial = 0; trial < 40; trial++) {
+        BenchAbSamples all = {0};
+        BenchComparison *list;
+        play(&all, "a", 8, 1 + 0.004 * trial, 0.04);
+        play(&all, "b", 8, 1, 0.04);
+        play(&all, "c", 8, 1, 0.04);
+        int count = bench_compare(&all, &params, &list);
+        for (int i = 0; i < count; i++) {
+            const BenchComparison *one = &list[i];
+            bool sure = one->adjusted<0.01, far = one->ratio> 1 + one->threshold;
+            seen[0] += !sure && one->p < 0.01 && far && one->low > 1;
+            seen[1] += sure && far && one->low > 1;
+            assert_true((one->verdict == BENCH_SLOWER) == (sure && far && one->low > 1));
+        }
+        bench_comparisons_free(list, count);
+        bench_ab_free(&all);
+    }
+    assert_true(seen[0] > 0 && seen[1] > 0);
 }
 
 TEST_GROUP(start, end)

@@ -185,3 +185,45 @@ TEST(a_round_counts_with_its_best)
     const double low[] = {1, 2, 3, 4, 5}, high[] = {6, 7, 8, 9, 10};
     near(bench_least_p(5, 5), bench_mann_whitney(low, 5, high, 5), 1e-9);
 }
+
+static int descending(const void *a, const void *b)
+{
+    double left = *(const double *)a, right = *(const double *)b;
+    return (left < right) - (left > right);
+}
+
+/* By all ways in which seven rounds can be dealt: 1% of them is the most extreme one. */
+TEST(noise_is_what_one_deal_in_a_hundred_exceeds)
+{
+    enum { DEALS = 128 };
+    double value[14], drawn[DEALS];
+    int group[14];
+    for (int i = 0; i < 14; i++) {
+        group[i] = i / 2;
+        value[i] = i % 2 ? 1 + 0.01 * (1 << i / 2) : 1;
+    }
+    for (int deal = 0; deal < DEALS; deal++) {
+        double left[7], right[7];
+        for (int r = 0; r < 7; r++) {
+            left[r] = value[2 * r + (deal >> r & 1)];
+            right[r] = value[2 * r + !(deal >> r & 1)];
+        }
+        drawn[deal] =
+            fabs(log(bench_quantile(right, 7, BENCH_LOW) / bench_quantile(left, 7, BENCH_LOW)));
+    }
+    qsort(drawn, DEALS, sizeof *drawn, descending);
+    const BenchTimes times = {value, group, 14};
+    near(bench_self_noise(&times, 7, 5), expm1(drawn[1]), 1e-9);
+    assert_true(drawn[1] > 1.2 * drawn[12]);
+}
+
+/* Quantiles of Student's t of 3 degrees of freedom, by scipy. */
+TEST(spread_is_corrected_for_as_many_comparisons)
+{
+    double value[] = {exp(-0.1), exp(-0.05), exp(0.05), exp(0.1)}, sd = sqrt(0.025 / 3);
+    int group[] = {0, 1, 2, 3};
+    const BenchTimes times = {value, group, 4};
+    double mad = 1.482602218505602 * 0.075, most = fmax(sd, mad) * sqrt(1.25);
+    near(bench_spread_noise(&times, 1, 0.05, 1), expm1(3.182446305284263 * most), 1e-9);
+    near(bench_spread_noise(&times, 1, 0.05, 10), expm1(7.4533185051505395 * most), 1e-9);
+}
