@@ -129,8 +129,8 @@ static const BenchSetting capsule_table[] = {
 };
 
 static const BenchSetting criterion_table[] = {
-    {"kind", BENCH_IN(OctCriterion, kind), .needed = true,
-     BENCH_ONE_OF("uniform", "features", "surface", "box", "sphere"),
+    {"kind", BENCH_IN(OctCriterion, kind),
+     BENCH_ONE_OF("uniform", "features", "surface", "box", "sphere"), .needed = true,
      SAYS("All cells, those that would weld what is not connected, those at the surface, or those "
           "that meet a place")},
     LEVEL(OctCriterion, level, "The deepest that it splits to; without it the octree's `levels`"),
