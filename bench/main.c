@@ -9,7 +9,6 @@
 #include "../lib/error.h"
 #include "../lib/printable.h"
 #include "cli/command.h"
-#include "cli/completion.h"
 #include "scene/scene.h"
 #include "settings/command_line.h"
 #include "system/interrupt.h"
@@ -124,10 +123,6 @@ int main(int argc, char **argv)
     argv[0] = program;
     argp_err_exit_status = SM_USAGE;
     bench_interrupt_catch();
-    if (argc > 1 && !strcmp(argv[1], "complete")) { /* asked by shells, and in no list */
-        bench_complete(stdout, commands, argc - 2, argv + 2);
-        return SM_OK;
-    }
     argc = ask_for_help(argc, argv);
 
     int first = argc;

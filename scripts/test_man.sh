@@ -8,7 +8,7 @@ command -v help2man >/dev/null && command -v man >/dev/null || { echo "no help2m
 folder=$(mktemp -d)
 trap 'rm -rf -- "$folder"' EXIT
 pages=0
-for name in shapebench $("$build/shapebench" complete '' | sed -n '/^help\t/!s/^\([a-z]*\)\t.*/shapebench-\1/p'); do
+for name in shapebench $("$build/shapebench" --help | sed -nE 's/^  ([a-z]+)  .*/shapebench-\1/p'); do
     page=$build/man/$name.1.gz
     [ -s "$page" ] || { echo "no page $name"; exit 1; }
     LC_ALL=C.UTF-8 MANWIDTH=120 man --warnings -l "$page" >"$folder/shown" 2>"$folder/warnings"

@@ -24,7 +24,7 @@ typedef struct {
 static const BenchSetting settings[] = {
     {BENCH_MEASURE("scene", "NAME|FILE.cfg", 1,
                    "A beam: its body's box, its cells and its time step are taken (default: beam)"),
-     BENCH_IN(Options, plan.file), .offers = bench_scene_names},
+     BENCH_IN(Options, plan.file)},
     {BENCH_MEASURE("engine", "NAME", 1, "%s (default: both)"), BENCH_IN(Options, plan.engines),
      .choices_of = bench_engine_choices, .why_not = bench_engine_unplanned},
     {LIST("w", 0, 1,

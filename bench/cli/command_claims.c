@@ -15,30 +15,11 @@ typedef struct {
     bool quick;
 } Options;
 
-static const char *const papers[] = {"fastlsm", "octree", "meshless", NULL};
-
-static const char *const *paper_words(void)
-{
-    return papers;
-}
-
-/* The names of the claims that are compiled in. */
-static const char *const *claim_words(void)
-{
-    static BenchClaims claims;
-    static const char **word;
-    SmError error;
-    if (word || bench_claims_builtin(&claims, &error)) return word;
-    word = sm_alloc((size_t)claims.count + 1, sizeof *word);
-    for (int c = 0; c < claims.count; c++) word[c] = claims.claim[c].name;
-    return word;
-}
-
 static const BenchSetting settings[] = {
     {BENCH_MEASURE("paper", "NAME", 1, "The claims of this paper only: fastlsm, octree, meshless"),
-     BENCH_IN(Options, paper), .offers = paper_words},
+     BENCH_IN(Options, paper)},
     {BENCH_MEASURE("claim", "NAME", 1, "This claim only; may be repeated (see --list)"),
-     BENCH_IN(Options, claims), .offers = claim_words},
+     BENCH_IN(Options, claims)},
     {BENCH_MEASURE("claims", "FILE", 1,
                    "Add the claims of this file, written as reference/claims.cfg; may be repeated"),
      BENCH_IN(Options, files)},

@@ -40,24 +40,10 @@ static void add_only(const struct argp_state *state, const char *name, void *mem
     only->name[only->count++] = name;
 }
 
-/* All that --only knows: groups, then kernels. */
-static const char *const *only_words(void)
-{
-    static const char *word[2 * BENCH_KERNELS_MOST + 1];
-    const char *name, *group, *last = "";
-    int count = 0;
-    for (int i = 0; bench_kernel_name(i, &group); i++) {
-        if (strcmp(group, last) != 0) word[count++] = group;
-        last = group;
-    }
-    for (int i = 0; (name = bench_kernel_name(i, NULL)); i++) word[count++] = name;
-    return word;
-}
-
 static const BenchSetting settings[] = {
     {BENCH_OPTION("only", "NAME", 1,
                   "Time this kernel or group only; may be repeated (see --list)"),
-     BENCH_IN(Options, only), .take = add_only, .offers = only_words},
+     BENCH_IN(Options, only), .take = add_only},
     {BENCH_OPTION("list", NULL, 1, "Alone: print the names of all kernels and their groups"),
      BENCH_IN(Options, list)},
     {BENCH_OPTION("precision", "P", 1, "%s (default: single)"), BENCH_IN(Options, precision),

@@ -55,7 +55,7 @@ static const BenchSetting settings[] = {
     {BENCH_OPTION("scene", "NAME|FILE", 1,
                   "Compare this scene only; may be repeated (default: all of the file, or of the "
                   "paper)"),
-     BENCH_IN(Options, scenes), .offers = bench_scene_names},
+     BENCH_IN(Options, scenes)},
     {BENCH_OPTION(
          "rounds", "N", 2,
          "Rounds of two processes of each build and scene (default: 10 or as many as the test "

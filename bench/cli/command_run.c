@@ -619,7 +619,7 @@ const BenchCommand bench_command_simulate = {
     .name = "run",
     .summary = "simulate a scene or a mesh and write its motion",
     .line = {settings, BENCH_TAKES_ALL, "SCENE|FILE.cfg|MESH|POINTS", help, check, .most = 1,
-             .offers = bench_scene_names, .limit = "One scene or mesh only"},
+             .limit = "One scene or mesh only"},
     .size = sizeof(Options),
     .perform = perform,
 };

@@ -123,8 +123,7 @@ static SmCode perform(void *record, int argc, char **argv, SmError *error)
 const BenchCommand bench_command_scenes = {
     .name = "scenes",
     .summary = "list the built-in scenes, or print one to copy and edit",
-    .line = {settings, 0, "[NAME]", help, check, .most = 1, .offers = bench_scene_names,
-             .limit = "One NAME only"},
+    .line = {settings, 0, "[NAME]", help, check, .most = 1, .limit = "One NAME only"},
     .size = sizeof(Options),
     .perform = perform,
 };

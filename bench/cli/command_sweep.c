@@ -18,7 +18,7 @@ typedef struct {
 
 static const BenchSetting settings[] = {
     {BENCH_MEASURE("scene", "NAME|FILE.cfg", 1, "The scene to sweep (default: hand)"),
-     BENCH_IN(Options, scene), .offers = bench_scene_names},
+     BENCH_IN(Options, scene)},
     {BENCH_MEASURE(
          "mesh", "FILE", 1,
          "Your mesh in the scene's place, scaled to it; without --scene dropped on the ground "

@@ -45,7 +45,7 @@ static const BenchSetting settings[] = {
                         "fastlsm and meshless")},
     {BENCH_OPTION("scene", "NAME|FILE", 1,
                   "Measure this scene only, or the paper's scenes NAME-...; may be repeated"),
-     BENCH_IN(Options, given), .offers = bench_scene_names},
+     BENCH_IN(Options, given)},
     {BENCH_IN(Options, chosen), .table = bench_override_settings, .who = BENCH_BY_TABLES},
     {BENCH_REPEATS_OPTION(Options, repeats, 10000, " (default: 15)")},
     {BENCH_BLOCK_OPTION(Options, block, " (default: 20)")},

@@ -253,14 +253,6 @@ static void take_isa(const struct argp_state *state, const char *text, void *mem
     setenv("SHAPEBENCH_ISA", text, 1);
 }
 
-/* The instruction sets, and all of them. */
-static const char *const *isa_words(void)
-{
-    static const char *word[8] = {"all"};
-    for (int isa = 0; isa < sm_isa_count() && isa < 6; isa++) word[isa + 1] = sm_isa_name(isa);
-    return word;
-}
-
 static const BenchSetting common_settings[] = {
     {.help = "Common options:", .section = 90, .who = BENCH_TAKES_ALL},
     {BENCH_OPTION("quiet", NULL, 90, "No progress and no remarks on standard error"),
@@ -270,8 +262,7 @@ static const BenchSetting common_settings[] = {
     {BENCH_OPTION("isa", "NAME", 90,
                   "Instruction set of the engines: sse2, avx2, avx512, as SHAPEBENCH_ISA (default: "
                   "the best of this processor); tables, kernels: all, one after the other"),
-     BENCH_IN(BenchCommon, isas), .take = take_isa, .offers = isa_words,
-     .who = BENCH_TAKES_THREADS},
+     BENCH_IN(BenchCommon, isas), .take = take_isa, .who = BENCH_TAKES_THREADS},
     {BENCH_OPTION("seed", "N", 90, "Seed of everything random (default: 1)"),
      BENCH_IN(BenchCommon, seed), 0, 2147483647, .who = BENCH_TAKES_SEED},
     {0},
@@ -284,15 +275,6 @@ static void add_options(Options *options, const BenchCommandLine *line, void *re
     add_table(options, &(Option){.setting = line->settings, .record = record}, 0);
     if (line->takes)
         add_table(options, &(Option){.setting = common_settings, .record = record}, line->takes);
-}
-
-void bench_options_each(const BenchCommandLine *line, void *record,
-                        void (*see)(void *context, const BenchSetting *setting), void *context)
-{
-    Options options;
-    add_options(&options, line, record);
-    for (int i = 0; i < options.count; i++)
-        if (options.option[i].setting->option) see(context, options.option[i].setting);
 }
 
 void bench_options_parse(const BenchCommandLine *line, int argc, char **argv, void *record)

@@ -34,17 +34,11 @@ typedef struct {
     void (*check)(const struct argp_state *state, void *record);
     int most;          /* how many arguments there may be that are no options; -1: any */
     const char *limit; /* what is said of one more: "One file is shown at a time" */
-    const char *const *(*offers)(void); /* arguments that a shell completes; NULL: only files */
 } BenchCommandLine;
 
 /* Reads a command's options into its record, whose defaults are set, and the common ones. Usage
  * errors end the program. argv[0] is the program and command ("shapebench run"). */
 void bench_options_parse(const BenchCommandLine *line, int argc, char **argv, void *record);
-
-/* Hands every option of the command to `see`, in the order of --help, headings left out. `record`
- * is a zeroed one of the command's. */
-void bench_options_each(const BenchCommandLine *line, void *record,
-                        void (*see)(void *context, const BenchSetting *setting), void *context);
 
 /* argp_parse(), but what getopt finds wrong (an unknown option, a missing value) is one line like
  * all others, and ends the program with exit code 2. */

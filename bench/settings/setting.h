@@ -43,15 +43,13 @@ typedef struct BenchSetting {
     bool needed;                              /* a choice that a file must make */
     const char *option;                       /* long name on the command line; NULL: none */
     int letter;                               /* its short name, or 0 */
-    const char *argument;               /* its value's name; NULL: it takes none, and sets 1 */
-    int section;                        /* its place in --help */
-    const char *help;                   /* without a key and an option: a heading there */
-    unsigned who;                       /* of those who share a table, who has it (bits; 0:
-                                         * all); of a group: as whom it is read */
-    unsigned of;                        /* engines that alone have it: BENCH_OF_... */
-    bool measuring;                     /* says what to measure (BenchCommon.measuring) */
-    const char *const *(*offers)(void); /* values that a shell completes (completion.h), where
-                                         * others are as good; NULL: the choices */
+    const char *argument; /* its value's name; NULL: it takes none, and sets 1 */
+    int section;          /* its place in --help */
+    const char *help;     /* without a key and an option: a heading there */
+    unsigned who;         /* of those who share a table, who has it (bits; 0:
+                           * all); of a group: as whom it is read */
+    unsigned of;          /* engines that alone have it: BENCH_OF_... */
+    bool measuring;       /* says what to measure (BenchCommon.measuring) */
     void (*take)(const struct argp_state *state, const char *text,
                  void *member); /* the option's
                                  * value, where it is none of these kinds */
@@ -100,10 +98,8 @@ typedef struct {
     BENCH_OPTION(name, value, place, words), .measuring = true
 #define BENCH_CHOICES(words) .choices = (words)
 #define BENCH_ONE_OF(...)                                                                          \
-    .choices = (const char *const[])                                                               \
-    {                                                                                              \
-        __VA_ARGS__, NULL                                                                          \
-    }
+    .choices = (const char *const[]){__VA_ARGS__, NULL},                                           \
+    .choices_of = NULL /* GCC 12.3 takes a literal that is the last for one without a name */
 #define BENCH_OUTPUT_OPTION(value, place, words)                                                   \
     BENCH_OPTION("output", value, place, words), .letter = 'o'
 

@@ -1,28 +1,12 @@
-# Completion for bash: the program says what can come next (bench/cli/completion.h).
+# Completion for bash, of what the program's own --help lists.
 _shapebench()
 {
-    local line=${COMP_LINE:0:COMP_POINT} word ending
-    local -a words lines
-    read -ra words <<<"$line"
-    [[ $line == *[[:space:]] ]] && words+=("")
-    mapfile -t lines < <("${words[0]}" complete "${words[@]:1}" 2>/dev/null)
-    # bash has --scene=NAME as three words, and completes the last
-    local begun=${words[-1]} before=""
-    if [[ $begun == --*=* && $COMP_WORDBREAKS == *=* ]]; then before=${begun%%=*}=; fi
-    COMPREPLY=()
-    for line in "${lines[@]}"; do
-        word=${line%%$'\t'*}
-        if [ -n "$word" ]; then
-            COMPREPLY+=("${word#"$before"}")
-            continue
-        fi
-        ending=${line#$'\t'}
-        compopt -o filenames
-        while IFS= read -r word; do
-            if [ -z "$ending" ] || [[ $word == *"$ending" ]] || [ -d "${word/#\~/$HOME}" ]; then
-                COMPREPLY+=("$word")
-            fi
-        done < <(compgen -f -- "${begun#"$before"}")
-    done
+    local words
+    case $COMP_CWORD:$2 in
+        1:*) words=$("$1" --help | sed -nE 's/^  ([a-z]+)  .*/\1/p') ;;
+        *:-*) words=$("$1" "${COMP_WORDS[1]}" --help | grep -oE -- '--[a-z][a-z-]*') ;;
+        *) words=$("$1" scenes | sed -nE 's/^  ([a-z][a-z-]*)  .*/\1/p') ;;
+    esac 2>/dev/null
+    mapfile -t COMPREPLY < <(compgen -W "$words" -- "$2")
 }
-complete -F _shapebench shapebench
+complete -o default -F _shapebench shapebench # files where nothing else begins so
