@@ -3,18 +3,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../lib/vector.h"
-#include "../../reference/brute_obstacle.h"
 #include "../../reference/meshless/surface/surface_nets.h"
 #include "../engines.h"
 #include "../play/mode.h"
 #include "../play/recording.h"
+#include "../play/strides.h"
 #include "../scene/override.h"
 #include "../store/draft.h"
-#include "../sweep/gap.h"
 #include "../system/progress.h"
 #include "../system/quote.h"
-#include "../system/remark.h"
 #include "command.h"
 #include "summary.h"
 
@@ -336,91 +333,6 @@ static SmCode run_step(BenchPlayback *play, BenchRecording *recording, bool reco
     return SM_OK;
 }
 
-/* How thick an obstacle is: what is within is put out at the nearest side. */
-static double thickness(const SmObstacle *o)
-{
-    double least = o->kind == SM_PLANE || o->kind == SM_BOX ? INFINITY : 2 * o->radius;
-    for (int d = 0; d < 3 && o->kind == SM_BOX; d++) least = fmin(least, o->b[d] - o->a[d]);
-    return least;
-}
-
-/* Is x on the other side of it than `before`, straight through it? */
-static bool passes(const SmObstacle *o, double thick, const double before[3], const double x[3])
-{
-    double by[3], end[3], v[3] = {0};
-    for (int d = 0; d < 3; d++) by[d] = (end[d] = x[d]) - before[d];
-    double length = sqrt(sm_dot(by, by));
-    if (length <= thick / 2) return false;
-    int samples = (int)fmin(1000, ceil(4 * length / thick));
-    ref_obstacle_push_out(o, end, v);
-    for (int i = 1; i <= samples; i++) {
-        double at[3], out[3], from_end[3];
-        for (int d = 0; d < 3; d++) at[d] = out[d] = before[d] + by[d] * i / samples;
-        if (!ref_obstacle_push_out(o, out, v)) continue;
-        for (int d = 0; d < 3; d++) {
-            from_end[d] = out[d] - end[d];
-            at[d] = out[d] - at[d];
-        }
-        return sm_dot(from_end, at) > 0.9 * thick * sqrt(sm_dot(at, at));
-    }
-    return false;
-}
-
-/* What is seen of the particles after each frame. */
-typedef struct {
-    double (*x)[3]; /* [count], of the only group */
-    long count;
-    double farthest, through[BENCH_MAX]; /* that a step took one; and through each obstacle */
-} Look;
-
-/* Is the state finite? */
-static bool look_at(const BenchPlayback *play, Look *look)
-{
-    const BenchScene *scene = play->scene;
-    double sum = 0;
-    for (int p = 0; p < play->count; p++) {
-        const BenchRunner *runner = &play->group[p].runner;
-        double(*x)[3] = sm_alloc((size_t)runner->particles, sizeof *x);
-        bool followed = play->count == 1 && look->count == runner->particles;
-        runner->type->get(runner->engine, SM_POSITION, x);
-        for (long i = 0; i < runner->particles; i++) {
-            sum += 0 * (x[i][0] + x[i][1] + x[i][2]);
-            if (!followed) continue;
-            double step = sqrt(sm_square_between(x[i], look->x[i])) / scene->steps_per_frame;
-            look->farthest = fmax(look->farthest, step);
-            for (int k = 0; k < scene->obstacle_count; k++)
-                if (passes(&scene->obstacle[k], thickness(&scene->obstacle[k]), look->x[i], x[i]))
-                    look->through[k] = fmax(look->through[k], step);
-        }
-        free(look->x);
-        look->x = x;
-        look->count = play->count == 1 ? runner->particles : 0;
-    }
-    return sum == 0;
-}
-
-static void remark_long_steps(const BenchPlayback *play, const Look *seen)
-{
-    static const char *const kinds[] = {"plane", "sphere", "box", "capsule"};
-    const BenchScene *scene = play->scene;
-    double h = scene->params.h, size = bench_body_size(play->body);
-    int number[4] = {0};
-    for (int i = 0; i < scene->obstacle_count; i++) {
-        const SmObstacle *o = &scene->obstacle[i];
-        double thick = thickness(o);
-        number[o->kind]++;
-        if (seen->through[i] > 0)
-            bench_remark("%s: particles passed through %s %d, which is %.3g thick: a step took "
-                         "them up to %.3g; --h %.2g, or a thickness of %.2g, holds them",
-                         scene->name, kinds[o->kind], number[o->kind], thick, seen->through[i],
-                         0.3 * h * thick / seen->through[i], 3 * seen->through[i]);
-    }
-    if (seen->farthest > size)
-        bench_remark("%s: a step took a particle up to %.3g times as far as the body is large: "
-                     "--h %.2g is short enough to see it move",
-                     scene->name, seen->farthest / size, 0.1 * h * size / seen->farthest);
-}
-
 static void count_change(bool changed, BenchOutcome *outcome)
 {
     double seconds = bench_watch_stop(&outcome->change.watch);
@@ -456,7 +368,7 @@ static SmCode run_frames(BenchPlayback *play, BenchRecording *recording, const O
     bench_progress_start(&progress, options->common.quiet);
     BenchMean none = {.watch = bench_watch(options->common.threads)};
     *outcome = (BenchOutcome){.finite = true, .step = none, .change = none};
-    Look seen = {.count = 0};
+    BenchStrides strides = {.count = 0};
     SmCode code = recording ? bench_recording_frame(recording, error) : SM_OK;
     for (int f = 0; f < scene->frames && !code && outcome->finite; f++) {
         code = change(play, outcome, error);
@@ -464,7 +376,7 @@ static SmCode run_frames(BenchPlayback *play, BenchRecording *recording, const O
             code = run_step(play, recording, options->record, outcome, error);
         end_span(outcome);
         if (code) break;
-        outcome->finite = look_at(play, &seen);
+        outcome->finite = bench_strides_look(&strides, play);
         if (outcome->finite) follow(play, outcome);
         if (recording && outcome->finite) code = bench_recording_frame(recording, error);
         bench_progress_show(&progress, scene->name, (f + 1.0) / scene->frames);
@@ -472,8 +384,8 @@ static SmCode run_frames(BenchPlayback *play, BenchRecording *recording, const O
     if (!code && options->record && outcome->finite)
         code = bench_recording_step(recording, outcome->steps, false, error);
     bench_progress_stop(&progress);
-    if (!code) remark_long_steps(play, &seen);
-    free(seen.x);
+    if (!code) bench_strides_remark(&strides, play);
+    free(strides.x);
     return code;
 }
 

@@ -301,3 +301,10 @@ void bench_body_free(BenchBody *body)
     free(body->pose);
     *body = (BenchBody){0};
 }
+
+double bench_body_size(const BenchBody *body)
+{
+    double size = 0;
+    for (int d = 0; d < 3; d++) size = fmax(size, body->high[d] - body->low[d]);
+    return size;
+}

@@ -68,4 +68,7 @@ SmCode bench_body_of_scene(const BenchScene *scene, const char *substitute, Benc
                            SmError *error);
 void bench_body_free(BenchBody *body);
 
+/* Largest extent of the body at rest. */
+double bench_body_size(const BenchBody *body);
+
 #endif

@@ -178,22 +178,41 @@ SmCode bench_setting_text(const BenchSetting *setting, const char *text, void *r
 
 /* ---- the documented list */
 
+static void print_value(FILE *file, const BenchSetting *setting, const void *place)
+{
+    const double *real = place;
+    if (setting->kind == BENCH_SET_CHOICE)
+        fputs(bench_setting_choices(setting)[*(const unsigned *)place - (unsigned)setting->low],
+              file);
+    else if (setting->kind == BENCH_SET_BOOL)
+        fputs(*(const bool *)place ? "true" : "false", file);
+    else if (setting->kind == BENCH_SET_REAL)
+        fprintf(file, "%.15g", *real);
+    else if (setting->kind == BENCH_SET_VECTOR)
+        fprintf(file, "[%.15g, %.15g, %.15g]", real[0], real[1], real[2]);
+    else if (setting->kind == BENCH_SET_LONG)
+        fprintf(file, "%ld", *(const long *)place);
+    else if (setting->kind == BENCH_SET_INT)
+        fprintf(file, "%d", *(const int *)place);
+    else
+        fputs(setting->kind == BENCH_SET_NAME ? *(const char *const *)place : place, file);
+}
+
 /* ", default 0.01", where the record holds one that the setting can take. */
 static void print_default(FILE *file, const BenchSetting *setting, const void *record)
 {
     const void *place = (const char *)record + setting->offset;
-    const char *const *choice = bench_setting_choices(setting);
     double value = setting->kind == BENCH_SET_REAL   ? *(const double *)place
                    : setting->kind == BENCH_SET_LONG ? (double)*(const long *)place
                    : setting->kind == BENCH_SET_INT  ? *(const int *)place
                                                      : NAN;
-    if (setting->kind == BENCH_SET_CHOICE)
-        fprintf(file, ", default \"%s\"", choice[*(const unsigned *)place]);
-    if (setting->kind == BENCH_SET_BOOL)
-        fprintf(file, ", default %s", *(const bool *)place ? "true" : "false");
-    if (setting->kind == BENCH_SET_TEXT && *(const char *)place)
-        fprintf(file, ", default \"%s\"", (const char *)place);
-    if (value >= setting->low && value <= setting->high) fprintf(file, ", default %g", value);
+    bool text = setting->kind == BENCH_SET_TEXT, word = text || setting->kind == BENCH_SET_CHOICE;
+    if (!(value >= setting->low && value <= setting->high) && setting->kind != BENCH_SET_BOOL &&
+        (text ? !*(const char *)place : !word))
+        return;
+    fputs(word ? ", default \"" : ", default ", file);
+    print_value(file, setting, place);
+    if (word) fputc('"', file);
 }
 
 /* In lines of up to 100 characters, indented; what stands before has been printed. */
@@ -227,26 +246,6 @@ void bench_settings_document(FILE *file, const BenchSetting *table, const void *
 }
 
 /* ---- what a record says */
-
-static void print_value(FILE *file, const BenchSetting *setting, const void *place)
-{
-    const double *real = place;
-    if (setting->kind == BENCH_SET_CHOICE)
-        fputs(bench_setting_choices(setting)[*(const unsigned *)place - (unsigned)setting->low],
-              file);
-    else if (setting->kind == BENCH_SET_BOOL)
-        fputs(*(const bool *)place ? "true" : "false", file);
-    else if (setting->kind == BENCH_SET_REAL)
-        fprintf(file, "%.15g", *real);
-    else if (setting->kind == BENCH_SET_VECTOR)
-        fprintf(file, "[%.15g, %.15g, %.15g]", real[0], real[1], real[2]);
-    else if (setting->kind == BENCH_SET_LONG)
-        fprintf(file, "%ld", *(const long *)place);
-    else if (setting->kind == BENCH_SET_INT)
-        fprintf(file, "%d", *(const int *)place);
-    else
-        fputs(setting->kind == BENCH_SET_NAME ? *(const char *const *)place : place, file);
-}
 
 static bool same_value(const BenchSetting *setting, const char *a, const char *b)
 {

@@ -205,13 +205,6 @@ void bench_gap_path(const BenchPath *path, const BenchPath *full, double size, B
             (size_t)path->frames * (size_t)path->points, NULL, size, gap);
 }
 
-double bench_body_size(const BenchBody *body)
-{
-    double size = 0;
-    for (int d = 0; d < 3; d++) size = fmax(size, body->high[d] - body->low[d]);
-    return size;
-}
-
 SmCode bench_width_mean(const BenchScene *scene, const BenchBody *body, double *cells,
                         SmError *error)
 {

@@ -51,9 +51,6 @@ void bench_path_free(BenchPath *path);
 /* Root mean square and largest distance of the points over all frames, of `size`. */
 void bench_gap_path(const BenchPath *path, const BenchPath *full, double size, BenchGap *gap);
 
-/* Largest extent of the body at rest. */
-double bench_body_size(const BenchBody *body);
-
 /* The half-width with which a lattice's regions hold as much of the body as the octree's: mean over
  * the body by mass, in finest cells. A node whose cell has the edge e is held with floor(w / e)
  * rings of such cells, which reach (floor(w / e) + 1/2) e to each side, and a lattice of half-width
