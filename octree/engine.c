@@ -92,15 +92,24 @@ static void get_node(const SmEngine *e, SmField field, long number, double value
     }
 }
 
-static void engine_get(SmEngine *e, SmField field, double (*values)[3])
+/* Numbers of NULL are 0 to count - 1. */
+static void engine_get_some(SmEngine *e, SmField field, long count, const long *numbers,
+                            double (*values)[3])
 {
     if (field == SM_GOAL && !e->goals) engine_goals(e);
     renumber(e);
-    for (long number = 0; number < e->oct->instances * e->count; number++)
+    for (long i = 0; i < count; i++) {
+        long number = numbers ? numbers[i] : i;
         if (field == SM_REST)
-            rest_position(e, number / e->count, leaf_of(e, number), values[number]);
+            rest_position(e, number / e->count, leaf_of(e, number), values[i]);
         else
-            get_node(e, field, number, values[number]);
+            get_node(e, field, number, values[i]);
+    }
+}
+
+static void engine_get(SmEngine *e, SmField field, double (*values)[3])
+{
+    engine_get_some(e, field, e->oct->instances * e->count, NULL, values);
 }
 
 static bool engine_get_shapes(SmEngine *e, double (*S)[9])
@@ -563,6 +572,7 @@ const SmEngineType SM_NAME(octree_engine) = {
     .step = engine_step,
     .goals = engine_goals,
     .get = engine_get,
+    .get_some = engine_get_some,
     .set = engine_set,
     .push = engine_push,
     .bound = engine_bound,

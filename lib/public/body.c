@@ -15,6 +15,7 @@
 #include "../isa.h"
 #include "../system/cores.h"
 #include "../system/team.h"
+#include "../vector.h"
 #include "inner.h"
 
 enum { MOST_COVERS = 12 }; /* wider functions cost much, and come to depend on one another */
@@ -444,6 +445,25 @@ static void follow_tears(sb_body *body)
     sm_team_leave(team);
 }
 
+/* In single precision a place is known to a hundredth of a cell at 1e5 cells, where a step of that
+ * length takes a body from its origin. */
+static int check_speed(const sb_body *body, sb_error *error)
+{
+    const double most = 1e5 * body->voxels.cell / body->h;
+    const long own = body->particles / body->instances;
+    if (strcmp(body->type->precision, "single") != 0) return SB_OK;
+    for (long first = 0; first < body->particles; first += own) {
+        double v[3];
+        body->type->get_some(body->engine, SM_VELOCITY, 1, &first, &v);
+        if (!(sm_dot(v, v) <= most * most))
+            return sm_refuse(error, SB_INPUT,
+                             "a step of %g s took the body farther than 1e5 cells, where single "
+                             "precision loses its shape: give a shorter 'h', or SB_DOUBLE",
+                             body->h);
+    }
+    return SB_OK;
+}
+
 int sb_body_step(sb_body *body, int64_t steps, sb_error *error)
 {
     int code = sm_check_handle(body, SB_IS_BODY, error);
@@ -454,7 +474,8 @@ int sb_body_step(sb_body *body, int64_t steps, sb_error *error)
     for (int64_t step = 0; step < steps; step++) body->type->step(body->engine, NULL);
     body->steps += steps;
     follow_tears(body);
-    return sm_done(SM_OK, NULL, error);
+    code = check_speed(body, error);
+    return code ? code : sm_done(SM_OK, NULL, error);
 }
 
 int sb_body_count(const sb_body *body, sb_body_counts *counts, size_t size, sb_error *error)

@@ -48,8 +48,8 @@
  * "octree" (Steinemann, Otaduy and Gross 2008). Three are references, in double precision: "brute",
  * shape matching without fast sums, to check others by, and "meshless" and "shell", elastic solids
  * and thin shells (Guo and Qin 2009), which a library that was built without CHOLMOD and ARPACK has
- * not. One that is the core alone (SHAPEBENCH_CORE) has no reference and reads no mesh files. What
- * an engine does not do is refused with a line. */
+ * not. One that is the core alone (SHAPEBENCH_CORE) has no reference. What an engine does not do is
+ * refused with a line. */
 #ifndef SHAPEBENCH_H
 #define SHAPEBENCH_H
 
@@ -354,7 +354,9 @@ int sb_body_create(const sb_voxels *voxels, const sb_mesh *surface, const sb_bod
 void sb_body_free(sb_body *body);
 
 /* Steps of h seconds (fastlsm eqs. 1 and 2). Allocates nothing, but where handles or obstacles have
- * come or gone since the last one. 20 to 200 ns a particle, step and thread. */
+ * come or gone since the last one. 20 to 200 ns a particle, step and thread. SB_INPUT: the steps
+ * are made, and one took a body of single precision so far that its shape is lost: above 1e5 cells.
+ */
 int sb_body_step(sb_body *body, int64_t steps, sb_error *error);
 
 typedef struct {

@@ -1062,6 +1062,36 @@ static void assert_unmoved(sb_body *body, double *before)
     sm_free_all(before, after);
 }
 
+/* Moves the second of two bodies by so many cells in each of some steps. */
+static int step_by(sb_body *body, int64_t count, double cells, int64_t steps, sb_error *error)
+{
+    double *v = room_for(count, 24);
+    for (int64_t p = count / 2; p < count; p++) v[3 * p] = cells * 0.1 / 0.01;
+    OK(sb_body_write(body, SB_VELOCITY, v, count, NULL));
+    free(v);
+    return sb_body_step(body, steps, error);
+}
+
+TEST(a_step_beyond_single_precision_is_an_error)
+{
+    sb_voxels *voxels = block_of(6, 3, 3);
+    for (int n = 0; n < 4; n++) {
+        sb_error error;
+        sb_body_params params = params_of(n / 2 ? SB_FASTLSM : SB_OCTREE);
+        params.precision = n % 2 ? SB_SINGLE : SB_DOUBLE, params.instances = 2;
+        sb_body *body = body_of(voxels, NULL, &params);
+        int64_t count = counts_of(body).particles;
+        OK(step_by(body, count, 0.99e5, 30, &error));
+        double *x = read_field(body, SB_POSITION);
+        for (int64_t i = 0; i < 3 * count; i++) assert_true(isfinite(x[i]));
+        assert_int_equal(step_by(body, count, 1.01e5, 30, &error), n % 2 ? SB_INPUT : SB_OK);
+        assert_true(n % 2 == !!strstr(error.text, "give a shorter 'h', or SB_DOUBLE"));
+        sb_body_free(body);
+        free(x);
+    }
+    sb_voxels_free(voxels);
+}
+
 TEST(misuse_of_particles_is_refused)
 {
     sb_error error;
