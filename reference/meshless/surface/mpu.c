@@ -1,5 +1,6 @@
 #include "mpu.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -302,6 +303,7 @@ static void divide(RefMpu *mpu)
 static SmCode check_closed(const RefCloud *cloud, SmError *error)
 {
     double area = 0, sum[3] = {0};
+    assert(cloud->points);
     for (long p = 0; p < cloud->points->count; p++) {
         area += cloud->area[p];
         for (int d = 0; d < 3; d++) sum[d] += cloud->area[p] * cloud->points->normal[p][d];
