@@ -84,7 +84,7 @@ SM_INLINE void weigh(const Lsm *lsm, const Group *g, int layer, bool plain)
     }
 }
 
-SM_INLINE void subsums_of(Lsm *lsm, int layer, int thread, bool plain, int side, SmLaps *laps)
+SM_INLINE void subsums_of(Lsm *lsm, int layer, int thread, SmLaps *laps, bool plain, int side)
 {
     const LsmLists *lists = &lsm->lists;
     const Group g = group_of(lsm, thread);
@@ -116,7 +116,7 @@ static void copy_regions(const Lsm *lsm, const Group *g, bool plain)
     }
 }
 
-SM_INLINE void solve_of(Lsm *lsm, int layer, int thread, bool plain, int side, SmLaps *laps)
+SM_INLINE void solve_of(Lsm *lsm, int layer, int thread, SmLaps *laps, bool plain, int side)
 {
     const LsmLists *lists = &lsm->lists;
     const Group g = group_of(lsm, thread);
@@ -147,7 +147,7 @@ SM_INLINE void solve_of(Lsm *lsm, int layer, int thread, bool plain, int side, S
     sm_lap(laps, lsm->pass->stage);
 }
 
-SM_INLINE void end_of(Lsm *lsm, int layer, int thread, bool plain, int side, SmLaps *laps)
+SM_INLINE void end_of(Lsm *lsm, int layer, int thread, SmLaps *laps, bool plain, int side)
 {
     const Group g = group_of(lsm, thread);
     const Stage down = plain ? (Stage){6, -1, true} : (Stage){6, 3, true};
@@ -166,16 +166,11 @@ SM_INLINE void end_of(Lsm *lsm, int layer, int thread, bool plain, int side, SmL
 #define PHASE(name)                                                                                \
     static void name(Lsm *lsm, int layer, int thread, SmLaps *laps)                                \
     {                                                                                              \
-        FOR_SIDE(lsm->side, name##_at)                                                             \
+        if (lsm->pass->plain)                                                                      \
+            FOR_SIDE(lsm->side, name##_of, lsm, layer, thread, laps, true)                         \
+        else                                                                                       \
+            FOR_SIDE(lsm->side, name##_of, lsm, layer, thread, laps, false)                        \
     }
-#define CALL(phase, side)                                                                          \
-    if (lsm->pass->plain)                                                                          \
-        phase(lsm, layer, thread, true, side, laps);                                               \
-    else                                                                                           \
-        phase(lsm, layer, thread, false, side, laps)
-#define subsums_at(side) CALL(subsums_of, side)
-#define solve_at(side)   CALL(solve_of, side)
-#define end_at(side)     CALL(end_of, side)
 PHASE(subsums)
 PHASE(solve)
 PHASE(end)

@@ -5,21 +5,25 @@
 #include "../../lib/simd/rows.h"
 #include "../state.h"
 
-/* Each kernel is one body in which `side` is a constant for the usual widths. */
-#define FOR_SIDE(side, call)                                                                       \
+/* Calls kernel(..., side), one body in which `side` is a constant for the usual widths: its loops
+ * are unrolled. */
+#define WITH_SIDE(side, kernel, ...) kernel(__VA_ARGS__, side)
+#define AT_SIDE(number, ...)                                                                       \
+    case number:                                                                                   \
+        WITH_SIDE(number, __VA_ARGS__);                                                            \
+        break;
+#define FOR_SIDE(side, ...)                                                                        \
     switch (side) {                                                                                \
-    case 3:                                                                                        \
-        call(3);                                                                                   \
-        break;                                                                                     \
-    case 5:                                                                                        \
-        call(5);                                                                                   \
-        break;                                                                                     \
-    case 7:                                                                                        \
-        call(7);                                                                                   \
-        break;                                                                                     \
+        AT_SIDE(3, __VA_ARGS__)                                                                    \
+        AT_SIDE(5, __VA_ARGS__)                                                                    \
+        AT_SIDE(7, __VA_ARGS__)                                                                    \
+        AT_SIDE(9, __VA_ARGS__)                                                                    \
+        AT_SIDE(11, __VA_ARGS__)                                                                   \
+        AT_SIDE(13, __VA_ARGS__)                                                                   \
+        AT_SIDE(15, __VA_ARGS__)                                                                   \
+        AT_SIDE(17, __VA_ARGS__)                                                                   \
     default:                                                                                       \
-        call(side);                                                                                \
-        break;                                                                                     \
+        WITH_SIDE(side, __VA_ARGS__);                                                              \
     }
 
 /* The row of this name among `rows`, which are `width` values wide. */

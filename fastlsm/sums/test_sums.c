@@ -223,7 +223,8 @@ TEST(through_lists_that_can_change)
 
 TEST(from_neighbours)
 {
-    check_layers((SmEngineParams){.layout = SM_LAYOUT_LISTS}, &lsm_sums_running, 4);
+    check_layers((SmEngineParams){.layout = SM_LAYOUT_LISTS}, &lsm_sums_running,
+                 SM_REAL_BITS == 32 ? 5 : 4);
 }
 
 TEST(over_boxes)
