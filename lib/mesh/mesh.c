@@ -8,6 +8,7 @@
 
 #include "../box.h"
 #include "../csr.h"
+#include "../edge.h"
 #include "../system/hash.h"
 
 static const double rounding_gap = 1e-7; /* of the box's longest side */
@@ -38,21 +39,7 @@ static SmBox bounding_box(const SmMesh *mesh)
 
 /* ---- how triangles meet along edges */
 
-typedef struct {
-    long open;        /* used by one triangle */
-    long nonmanifold; /* used by more than two */
-    long flipped;     /* used by two that run along it the same way */
-    long unbalanced;  /* used more often one way than the other, as are all of the first and third
-                       * kind: where there is none, the triangles bound a volume */
-} EdgeCounts;
-
-/* Pairs of numbers in buckets by vertex: the lower end of an edge, the lowest corner of a
- * triangle. Buckets are short, so sorting each is linear in all. */
-typedef struct {
-    size_t *start; /* [vertex_count + 1] */
-    int (*pair)[2];
-} Buckets;
-
+/* Edges around one vertex are few: sorting them by insertion is linear in all of them. */
 static void sort_pairs(int (*pair)[2], size_t count)
 {
     if (count > 24) {
@@ -68,112 +55,50 @@ static void sort_pairs(int (*pair)[2], size_t count)
     }
 }
 
-/* start[v] holds the count of bucket v; makes it the end of the bucket, so that filling
- * backwards leaves it at the beginning. */
-static void open_buckets(Buckets *buckets, long vertex_count)
+/* Returns all edges as (higher end, direction), sorted, by their lower end v: from start[v] to
+ * start[v + 1], of [vertex_count + 2] zeros. The caller frees. */
+static int (*sort_edges(const SmMesh *mesh, size_t *start))[2]
 {
-    size_t sum = 0;
-    for (long v = 0; v < vertex_count; v++) {
-        sum += buckets->start[v];
-        buckets->start[v] = sum;
-    }
-    buckets->start[vertex_count] = sum;
-    buckets->pair = sm_alloc(sum, sizeof *buckets->pair);
-}
-
-static void sort_buckets(Buckets *buckets, long vertex_count)
-{
-    for (long v = 0; v < vertex_count; v++)
-        sort_pairs(buckets->pair + buckets->start[v], buckets->start[v + 1] - buckets->start[v]);
-}
-
-static void free_buckets(Buckets *buckets)
-{
-    free(buckets->start);
-    free(buckets->pair);
-}
-
-/* Edges in the bucket of their lower end as (higher end, direction). */
-static Buckets bucket_edges(const SmMesh *mesh)
-{
-    Buckets buckets = {.start = sm_alloc((size_t)mesh->vertex_count + 1, sizeof(size_t))};
-    for (int filling = 0; filling < 2; filling++) {
-        for (long t = 0; t < mesh->triangle_count; t++) {
-            for (int c = 0; c < 3; c++) {
-                int a = mesh->triangle[t][c], b = mesh->triangle[t][(c + 1) % 3];
-                if (a == b) continue;
-                int low = a < b ? a : b;
-                if (!filling) {
-                    buckets.start[low]++;
-                    continue;
-                }
-                int *pair = buckets.pair[--buckets.start[low]];
-                pair[0] = a < b ? b : a;
-                pair[1] = a < b;
-            }
+    int(*pair)[2] = sm_alloc(3 * (size_t)mesh->triangle_count, sizeof *pair);
+    for (long t = 0; t < mesh->triangle_count; t++)
+        for (int c = 0; c < 3; c++) start[sm_edge(mesh->triangle[t], c, 0).low + 2]++;
+    for (long v = 0; v < mesh->vertex_count; v++) start[v + 2] += start[v + 1];
+    for (long t = 0; t < mesh->triangle_count; t++)
+        for (int c = 0; c < 3; c++) {
+            SmEdge edge = sm_edge(mesh->triangle[t], c, 0);
+            size_t at = start[edge.low + 1]++;
+            pair[at][0] = edge.high;
+            pair[at][1] = edge.forth;
         }
-        if (!filling) open_buckets(&buckets, mesh->vertex_count);
-    }
-    sort_buckets(&buckets, mesh->vertex_count);
-    return buckets;
-}
-
-/* Counts the edges of each kind; an edge from a vertex to itself is not counted. `boundary`
- * ([vertex_count], or NULL) gets true for the ends of open edges and is left alone elsewhere.
- * O(triangles), but n log n in the triangles around one vertex. */
-static EdgeCounts count_edges(const SmMesh *mesh, bool *boundary)
-{
-    EdgeCounts counts = {0};
-    Buckets buckets = bucket_edges(mesh);
-    for (long v = 0; v < mesh->vertex_count; v++) {
-        size_t end = buckets.start[v + 1];
-        for (size_t i = buckets.start[v], next; i < end; i = next) {
-            const int *pair = buckets.pair[i];
-            long up = pair[1]; /* how often from the lower end to the higher */
-            for (next = i + 1; next < end && buckets.pair[next][0] == pair[0];)
-                up += buckets.pair[next++][1];
-            if (next - i == 1) {
-                counts.open++;
-                if (boundary) boundary[v] = boundary[pair[0]] = true;
-            }
-            counts.nonmanifold += next - i > 2;
-            counts.unbalanced += 2 * up != (long)(next - i);
-            counts.flipped += next - i == 2 && pair[1] == buckets.pair[i + 1][1];
-        }
-    }
-    free_buckets(&buckets);
-    return counts;
-}
-
-static void sort_corners(const int triangle[3], int corner[3])
-{
-    int a = triangle[0], b = triangle[1], c = triangle[2];
-    corner[0] = a < b ? (a < c ? a : c) : (b < c ? b : c);
-    corner[2] = a > b ? (a > c ? a : c) : (b > c ? b : c);
-    corner[1] = (int)((long)a + b + c - corner[0] - corner[2]);
-}
-
-/* Triangles whose three corners an earlier one has too, in any order. Same cost. */
-static long count_duplicates(const SmMesh *mesh)
-{
-    Buckets buckets = {.start = sm_alloc((size_t)mesh->vertex_count + 1, sizeof(size_t))};
-    int corner[3];
-    for (long t = 0; t < mesh->triangle_count; t++) {
-        sort_corners(mesh->triangle[t], corner);
-        buckets.start[corner[0]]++;
-    }
-    open_buckets(&buckets, mesh->vertex_count);
-    for (long t = 0; t < mesh->triangle_count; t++) {
-        sort_corners(mesh->triangle[t], corner);
-        memcpy(buckets.pair[--buckets.start[corner[0]]], corner + 1, 2 * sizeof(int));
-    }
-    sort_buckets(&buckets, mesh->vertex_count);
-    long duplicates = 0;
     for (long v = 0; v < mesh->vertex_count; v++)
-        for (size_t i = buckets.start[v] + 1; i < buckets.start[v + 1]; i++)
-            duplicates += sm_compare_pairs(buckets.pair[i - 1], buckets.pair[i]) == 0;
-    free_buckets(&buckets);
-    return duplicates;
+        sort_pairs(pair + start[v], start[v + 1] - start[v]);
+    return pair;
+}
+
+/* Counts the edges of each kind; an edge from a vertex to itself is not counted. The volume is NaN
+ * where an edge is used more often one way than the other, and 0 where the triangles bound one.
+ * `boundary` ([vertex_count], or NULL) gets true for the ends of open edges and is left alone
+ * elsewhere. O(triangles), but n log n in the triangles around one vertex. */
+static SmMeshInfo count_edges(const SmMesh *mesh, bool *boundary)
+{
+    SmMeshInfo info = {.triangles = mesh->triangle_count, .vertices = mesh->vertex_count};
+    size_t *start = sm_alloc((size_t)mesh->vertex_count + 2, sizeof *start);
+    int(*edge)[2] = sort_edges(mesh, start);
+    for (long v = 0; v < mesh->vertex_count; v++)
+        for (size_t i = start[v], next; i < start[v + 1]; i = next) {
+            long up = edge[i][1]; /* how often from the lower end to the higher */
+            for (next = i + 1; next < start[v + 1] && edge[next][0] == edge[i][0];)
+                up += edge[next++][1];
+            long uses = (long)(next - i);
+            if (edge[i][0] == v) continue;
+            if (uses == 1 && boundary) boundary[v] = boundary[edge[i][0]] = true;
+            info.open_edges += uses == 1;
+            info.nonmanifold_edges += uses > 2;
+            info.flipped_edges += uses == 2 && up != 1;
+            if (2 * up != uses) info.volume = NAN;
+        }
+    sm_free_all(start, edge);
+    return info;
 }
 
 /* ---- merging of vertices */
@@ -195,27 +120,45 @@ static uint64_t table_mask(long entries)
     return size - 1;
 }
 
-/* Lets every vertex stand for the first one at its position. */
-static SmPieces equal_positions(SmMesh *mesh)
+/* Lets each of `count` items of three words stand for the first one that is equal to it. */
+static SmPieces equal_items(long count, const void *items)
 {
+    const char(*item)[3 * sizeof(uint64_t)] = items;
     SmPieces same;
-    sm_pieces_init(mesh->vertex_count, &same);
-    uint64_t mask = table_mask(mesh->vertex_count);
-    int *table = sm_alloc(mask + 1, sizeof *table); /* vertex + 1, or 0 */
-    for (long v = 0; v < mesh->vertex_count; v++) {
+    sm_pieces_init(count, &same);
+    uint64_t mask = table_mask(count);
+    int *table = sm_alloc(mask + 1, sizeof *table); /* item + 1, or 0 */
+    for (long i = 0; i < count; i++) {
         uint64_t word[3];
-        for (int a = 0; a < 3; a++) mesh->position[v][a] += 0.0; /* -0 becomes 0 */
-        memcpy(word, mesh->position[v], sizeof word);
+        memcpy(word, item[i], sizeof word);
         uint64_t slot = hash_words(word) & mask;
-        for (; table[slot]; slot = (slot + 1) & mask)
-            if (!memcmp(mesh->position[table[slot] - 1], word, sizeof word)) break;
+        while (table[slot] && memcmp(item[table[slot] - 1], word, sizeof word) != 0)
+            slot = (slot + 1) & mask;
         if (table[slot])
-            sm_pieces_link(&same, v, table[slot] - 1);
+            sm_pieces_link(&same, i, table[slot] - 1);
         else
-            table[slot] = (int)v + 1;
+            table[slot] = (int)i + 1;
     }
     free(table);
     return same;
+}
+
+/* Triangles whose three corners an earlier one has too, in any order. */
+static long count_duplicates(const SmMesh *mesh)
+{
+    uint64_t(*corners)[3] = sm_alloc((size_t)mesh->triangle_count, sizeof *corners);
+    for (long t = 0; t < mesh->triangle_count; t++) {
+        int corner[3];
+        memcpy(corner, mesh->triangle[t], sizeof corner);
+        sm_sort_ints(corner, 3);
+        for (int c = 0; c < 3; c++) corners[t][c] = (uint64_t)corner[c];
+    }
+    SmPieces same = equal_items(mesh->triangle_count, corners);
+    long duplicates = 0;
+    for (long t = 0; t < mesh->triangle_count; t++) duplicates += sm_pieces_first(&same, t) != t;
+    sm_pieces_free(&same);
+    free(corners);
+    return duplicates;
 }
 
 /* Replaces vertices by the first of their piece, then drops what sm_mesh_merge() says. */
@@ -309,14 +252,15 @@ static void close_rounding_gaps(SmMesh *mesh)
 {
     if (!mesh->triangle_count) return;
     bool *boundary = sm_alloc((size_t)mesh->vertex_count, sizeof *boundary);
-    EdgeCounts before = count_edges(mesh, boundary);
-    if (before.open) {
+    SmMeshInfo before = count_edges(mesh, boundary);
+    if (before.open_edges) {
         SmMesh closed = sm_mesh_copy(mesh);
         SmPieces same = near_positions(mesh, boundary);
         collapse(&closed, &same);
         sm_pieces_free(&same);
-        EdgeCounts after = count_edges(&closed, NULL);
-        if (closed.triangle_count && !after.open && after.nonmanifold <= before.nonmanifold) {
+        SmMeshInfo after = count_edges(&closed, NULL);
+        if (after.triangles && !after.open_edges &&
+            after.nonmanifold_edges <= before.nonmanifold_edges) {
             SmMesh old = *mesh;
             *mesh = closed;
             closed = old;
@@ -328,7 +272,9 @@ static void close_rounding_gaps(SmMesh *mesh)
 
 void sm_mesh_merge(SmMesh *mesh)
 {
-    SmPieces same = equal_positions(mesh);
+    for (long v = 0; v < mesh->vertex_count; v++)
+        for (int a = 0; a < 3; a++) mesh->position[v][a] += 0.0; /* -0 becomes 0 */
+    SmPieces same = equal_items(mesh->vertex_count, mesh->position);
     collapse(mesh, &same);
     sm_pieces_free(&same);
     close_rounding_gaps(mesh);
@@ -350,15 +296,6 @@ void sm_mesh_pieces(const SmMesh *mesh, SmPieces *pieces)
     sm_pieces_finish(pieces, NULL, mesh->triangle_count);
 }
 
-static long count_components(const SmMesh *mesh)
-{
-    SmPieces pieces;
-    sm_mesh_pieces(mesh, &pieces);
-    long components = pieces.count;
-    sm_pieces_free(&pieces);
-    return components;
-}
-
 static bool is_degenerate(double edge[3][3])
 {
     double normal[3];
@@ -368,7 +305,7 @@ static bool is_degenerate(double edge[3][3])
     return sqrt(sm_dot(normal, normal)) <= no_height * longest;
 }
 
-/* Volume about the box's centre, where a mesh far from the origin loses no digits. */
+/* Adds the volume about the box's centre, where a mesh far from the origin loses no digits. */
 static void measure_triangles(const SmMesh *mesh, SmMeshInfo *info)
 {
     double six_volumes = 0, middle[3];
@@ -381,24 +318,22 @@ static void measure_triangles(const SmMesh *mesh, SmMeshInfo *info)
         sm_cross(p[1], p[2], normal);
         six_volumes += sm_dot(p[0], normal);
     }
-    info->volume = six_volumes / 6;
+    info->volume += six_volumes / 6;
 }
 
 SmMeshInfo sm_mesh_info(const SmMesh *mesh)
 {
-    SmMeshInfo info = {.triangles = mesh->triangle_count, .vertices = mesh->vertex_count};
-    EdgeCounts edges = count_edges(mesh, NULL);
-    info.open_edges = edges.open;
-    info.nonmanifold_edges = edges.nonmanifold;
-    info.flipped_edges = edges.flipped;
-    info.watertight = mesh->triangle_count && !edges.open && !edges.nonmanifold;
-    info.components = count_components(mesh);
+    SmMeshInfo info = count_edges(mesh, NULL);
+    info.watertight = info.triangles && !info.open_edges && !info.nonmanifold_edges;
+    SmPieces pieces;
+    sm_mesh_pieces(mesh, &pieces);
+    info.components = pieces.count;
+    sm_pieces_free(&pieces);
     info.duplicates = count_duplicates(mesh);
     SmBox box = bounding_box(mesh);
     memcpy(info.low, box.low, sizeof info.low);
     memcpy(info.high, box.high, sizeof info.high);
     measure_triangles(mesh, &info);
-    if (edges.unbalanced) info.volume = NAN;
     return info;
 }
 
