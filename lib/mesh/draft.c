@@ -47,12 +47,22 @@ void sm_draft_reserve(SmDraft *draft, long vertices, long triangles)
     set_rooms(draft, draft->mesh.vertex_count + vertices, draft->mesh.triangle_count + triangles);
 }
 
+static bool fail_parts(SmDraft *draft)
+{
+    return sm_draft_fail(draft,
+                         "it uses its parts so often that they make more than %.2g million "
+                         "triangles, which a file of its size does not hold: export one of each "
+                         "part",
+                         draft->most / 1e6);
+}
+
 bool sm_draft_vertex(SmDraft *draft, const double position[3], const double normal[3])
 {
     static const double none[3];
     long v = draft->mesh.vertex_count;
     if (v == INT_MAX)
         return sm_draft_fail(draft, "more than %d vertices; divide the mesh", INT_MAX);
+    if ((double)v >= 3 * draft->most) return fail_parts(draft);
     for (int d = 0; d < 3; d++)
         if (!isfinite(position[d]))
             return sm_draft_fail(draft,
@@ -89,6 +99,7 @@ bool sm_draft_face(SmDraft *draft)
     if (count < 3) return true;
     if (all > INT_MAX)
         return sm_draft_fail(draft, "more than %d triangles; divide the mesh", INT_MAX);
+    if ((double)all > draft->most) return fail_parts(draft);
     if (all > draft->triangle_room) set_rooms(draft, 0, 2 * all + 64);
     memcpy(mesh->triangle[first], draft->corner, (size_t)count * sizeof *draft->corner);
     mesh->triangle_count = all;

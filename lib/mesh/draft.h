@@ -15,6 +15,8 @@
 /* Ends messages about files that another program must have damaged. */
 #define SM_AGAIN "; is it damaged or cut off? Export it again"
 
+#define SM_NO_MESH "not a mesh file that can be read; save it as OBJ, PLY, STL, OFF or glTF"
+
 /* Says what to do with points without triangles. */
 #define SM_POINTS_GO                                                                               \
     "'run --engine meshless' takes points with normals (PLY, .xyz, .pts, .txt), 'run --engine "    \
@@ -31,6 +33,8 @@ typedef struct {
     bool joined;                  /* a backslash at a line's end joins it with the next one */
     bool commas;                  /* commas and semicolons divide words, too */
     locale_t locale;              /* "C" */
+    double most; /* triangles, and a third of the vertices: a small file that uses its parts again
+                  * and again would take minutes and all memory */
     SmMesh mesh;
     double (*normal)[3]; /* of points, or NULL */
     SmMeshLeftOut left_out;
@@ -108,6 +112,10 @@ bool sm_draft_face(SmDraft *draft);
 bool sm_draft_finish(SmDraft *draft);
 
 /* ---- formats */
+
+/* Reads as sm_mesh_read() does, by this reader, not by that of the name's suffix. */
+SmCode sm_mesh_read_by(const SmMeshFile *file, bool (*read)(SmDraft *), SmMesh *mesh,
+                       SmMeshLeftOut *left_out, SmError *error);
 
 bool sm_read_obj(SmDraft *draft);
 bool sm_read_ply(SmDraft *draft);

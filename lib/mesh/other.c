@@ -1,34 +1,33 @@
-/* Other formats, through Assimp in a child process, which hands over a binary PLY file. */
+/* Other formats, read through Assimp in a child process, which hands over the mesh. */
 #include <assimp/cimport.h>
 #include <assimp/config.h>
 #include <assimp/scene.h>
-#include <math.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include "../system/child.h"
+#include "draft.h"
 #include "import.h"
 
 static const double default_seconds = 20, default_seconds_per_megabyte = 1;
 static const double default_megabytes = 4096;
 
-enum { REFUSED = '!' }; /* begins a reply that is a line of error */
+/* Begins what the child writes; the mesh's positions and triangles follow. */
+typedef struct {
+    SmError error;
+    SmMesh mesh; /* its counts */
+    SmMeshLeftOut left_out;
+} Reply;
 
 /* ---- in the child */
 
 typedef struct {
     double row[3][4];
 } Transform;
-
-typedef struct {
-    const SmMeshFile *file;
-    const struct aiScene *scene;
-    FILE *reply;
-    bool of_faces;          /* write faces, not vertices; neither where `reply` is NULL */
-    double vertices, faces; /* so far */
-} Import;
 
 static Transform compose(const Transform *outer, const struct aiMatrix4x4 *m)
 {
@@ -40,87 +39,71 @@ static Transform compose(const Transform *outer, const struct aiMatrix4x4 *m)
     return whole;
 }
 
-static void write_vertices(const Import *import, const struct aiMesh *mesh, const Transform *t)
+/* Turns the faces of a mirrored part round. */
+static bool add_part(SmDraft *draft, const struct aiMesh *mesh, const Transform *t)
 {
+    bool mirrored = sm_pose_mirrors((const double(*)[4])t->row);
+    double first = (double)draft->mesh.vertex_count;
     for (unsigned v = 0; v < mesh->mNumVertices; v++) {
         const struct aiVector3D *from = &mesh->mVertices[v];
         const double p[3] = {(double)from->x, (double)from->y, (double)from->z};
         double to[3];
         for (int d = 0; d < 3; d++) to[d] = sm_dot(t->row[d], p) + t->row[d][3];
-        fwrite(to, sizeof *to, 3, import->reply);
+        if (!sm_draft_vertex(draft, to, NULL)) return false;
     }
-}
-
-/* Turns the faces of a mirrored part round. */
-static void write_faces(const Import *import, const struct aiMesh *mesh, const Transform *t)
-{
-    bool mirrored = sm_pose_mirrors((const double(*)[4])t->row);
     for (unsigned f = 0; f < mesh->mNumFaces; f++) {
         const struct aiFace *face = &mesh->mFaces[f];
-        unsigned count = face->mNumIndices;
-        fwrite(&count, sizeof count, 1, import->reply);
-        for (unsigned c = 0; c < count; c++) {
-            double corner = import->vertices + face->mIndices[mirrored ? count - 1 - c : c];
-            fwrite(&corner, sizeof corner, 1, import->reply);
-        }
+        for (unsigned c = 0, count = face->mNumIndices; c < count; c++)
+            if (!sm_draft_corner(draft, first + face->mIndices[mirrored ? count - 1 - c : c]))
+                return false;
+        if (!sm_draft_face(draft)) return false;
     }
+    return true;
 }
 
-static void walk_nodes(Import *import, const struct aiNode *node, const Transform *outer)
+static bool add_parts(SmDraft *draft, const struct aiScene *scene, const struct aiNode *node,
+                      const Transform *outer)
 {
     Transform transform = compose(outer, &node->mTransformation);
-    for (unsigned m = 0; m < node->mNumMeshes; m++) {
-        const struct aiMesh *mesh = import->scene->mMeshes[node->mMeshes[m]];
-        if (import->reply && import->of_faces) write_faces(import, mesh, &transform);
-        if (import->reply && !import->of_faces) write_vertices(import, mesh, &transform);
-        import->vertices += mesh->mNumVertices;
-        import->faces += mesh->mNumFaces;
-    }
+    for (unsigned m = 0; m < node->mNumMeshes; m++)
+        if (!add_part(draft, scene->mMeshes[node->mMeshes[m]], &transform)) return false;
     for (unsigned c = 0; c < node->mNumChildren; c++)
-        walk_nodes(import, node->mChildren[c], &transform);
+        if (!add_parts(draft, scene, node->mChildren[c], &transform)) return false;
+    return true;
 }
 
-/* A small file that uses its parts again and again would take minutes and all memory. */
-static void write_ply(Import *import, FILE *reply)
+static bool read_scene(SmDraft *draft)
 {
     static const Transform identity = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
-    double most = 2e6 + (double)import->file->size;
-    walk_nodes(import, import->scene->mRootNode, &identity);
-    if (import->faces > most || import->vertices > 3 * most) {
-        fprintf(reply, "%c" SM_PARTS_TOO_MANY, REFUSED, most / 1e6);
-        return;
-    }
-    fprintf(reply,
-            "ply\nformat binary_%s_endian 1.0\nelement vertex %.0f\nproperty double x\n"
-            "property double y\nproperty double z\nelement face %.0f\n"
-            "property list uint double vertex_index\nend_header\n",
-            __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__ ? "little" : "big", import->vertices,
-            import->faces);
-    import->reply = reply;
-    for (int pass = 0; pass < 2; pass++) {
-        import->of_faces = pass == 1;
-        import->vertices = 0;
-        walk_nodes(import, import->scene->mRootNode, &identity);
-    }
+    const char *dot = strrchr(draft->file->name, '.'), *suffix = dot ? dot + 1 : "";
+    setrlimit(RLIMIT_NOFILE, &(struct rlimit){0}); /* files that the mesh names are not opened */
+    struct aiPropertyStore *properties = aiCreatePropertyStore();
+    aiSetImportPropertyInteger(properties, AI_CONFIG_IMPORT_NO_SKELETON_MESHES, 1);
+    const struct aiScene *scene = aiImportFileFromMemoryWithProperties(
+        draft->begin, (unsigned)(draft->end - draft->begin), 0, suffix, properties);
+    const char *why = aiGetErrorString();
+    draft->most = 2e6 + (double)draft->file->size;
+    if (strstr(why, "bad_alloc")) _exit(SM_CHILD_NO_MEMORY);
+    if (scene && scene->mRootNode)
+        return add_parts(draft, scene, scene->mRootNode, &identity) && sm_draft_finish(draft);
+    return strncmp(why, "No suitable reader", 18)
+               ? sm_draft_fail(draft, "cannot be read: %.300s" SM_AGAIN, why)
+               : sm_draft_fail(draft, SM_NO_MESH);
 }
 
 /* An SmChildBody of an SmMeshFile. */
 static int import_bytes(void *argument, int descriptor)
 {
-    Import import = {.file = argument};
-    const char *dot = strrchr(import.file->name, '.'), *suffix = dot ? dot + 1 : "";
-    FILE *reply = fdopen(descriptor, "wb");
-    setrlimit(RLIMIT_NOFILE, &(struct rlimit){0}); /* files that the mesh names are not opened */
-    struct aiPropertyStore *properties = aiCreatePropertyStore();
-    aiSetImportPropertyInteger(properties, AI_CONFIG_IMPORT_NO_SKELETON_MESHES, 1);
-    import.scene = aiImportFileFromMemoryWithProperties(
-        (const char *)import.file->bytes, (unsigned)import.file->size, 0, suffix, properties);
-    if (!reply || strstr(aiGetErrorString(), "bad_alloc")) return SM_CHILD_NO_MEMORY;
-    if (import.scene && import.scene->mRootNode)
-        write_ply(&import, reply);
-    else
-        fprintf(reply, "%c%.300s", REFUSED, aiGetErrorString());
-    return fclose(reply) != 0;
+    Reply reply = {.error = {.code = SM_OK}};
+    SmMesh *mesh = &reply.mesh;
+    FILE *file = fdopen(descriptor, "wb");
+    if (!file) return SM_CHILD_NO_MEMORY;
+    SmCode code = sm_mesh_read_by(argument, read_scene, mesh, &reply.left_out, &reply.error);
+    fwrite(&reply, sizeof reply, 1, file);
+    if (code) return fclose(file) != 0;
+    fwrite(mesh->position, sizeof *mesh->position, (size_t)mesh->vertex_count, file);
+    fwrite(mesh->triangle, sizeof *mesh->triangle, (size_t)mesh->triangle_count, file);
+    return fclose(file) != 0;
 }
 
 /* ---- in the parent */
@@ -144,18 +127,22 @@ static SmCode fail_child(const SmChildResult *result, const SmChildLimits *limit
                    result->signal ? strsignal(result->signal) : "it gave up");
 }
 
-static SmCode fail_reply(const SmChildResult *result, const char *path, SmError *error)
+/* Takes nothing for granted: the child's memory may have been damaged. */
+static bool take_mesh(const SmChildResult *result, Reply *reply)
 {
-    const char *text = (const char *)result->reply + 1;
-    int length = (int)fmin((double)result->size - 1, 300);
-    if (length > 17 && !memcmp(text, "No suitable reader", 18))
-        return sm_fail(
-            error, SM_INPUT,
-            "%s: not a mesh file that can be read; save it as OBJ, PLY, STL, OFF or glTF", path);
-    return sm_fail(error, SM_INPUT,
-                   "%s: cannot be read: %.*s; is it damaged or cut off? Export it "
-                   "again",
-                   path, length, text);
+    SmMesh *mesh = &reply->mesh;
+    if (result->end != SM_CHILD_REPLIED || result->size < sizeof *reply) return false;
+    memcpy(reply, result->reply, sizeof *reply);
+    reply->error.text[sizeof reply->error.text - 1] = 0;
+    long vertices = mesh->vertex_count, triangles = mesh->triangle_count;
+    if (vertices < 0 || vertices > INT_MAX || triangles < 0 || triangles > INT_MAX) return false;
+    size_t positions = (size_t)vertices * sizeof *mesh->position;
+    size_t corners = (size_t)triangles * sizeof *mesh->triangle;
+    if (result->size != sizeof *reply + positions + corners) return false;
+    *mesh = sm_mesh_new(vertices, triangles);
+    memcpy(mesh->position, result->reply + sizeof *reply, positions);
+    memcpy(mesh->triangle, result->reply + sizeof *reply + positions, corners);
+    return true;
 }
 
 SmCode sm_import_other(const SmMeshFile *file, const SmImportLimits *limits, SmMesh *mesh,
@@ -169,15 +156,15 @@ SmCode sm_import_other(const SmMeshFile *file, const SmImportLimits *limits, SmM
     *mesh = (SmMesh){0};
     if (!file->size) return sm_fail(error, SM_INPUT, "%s: the file is empty", file->name);
     SmChildResult result = sm_child_run(import_bytes, (void *)file, &child);
-    SmMeshFile ply = {
-        .name = file->name, .suffix = ".ply", .bytes = result.reply, .size = result.size};
-    SmCode code;
-    if (result.end != SM_CHILD_REPLIED)
-        code = fail_child(&result, &child, file->name, error);
-    else if (result.size && result.reply[0] == REFUSED)
-        code = fail_reply(&result, file->name, error);
-    else
-        code = sm_mesh_read(&ply, mesh, left_out, error);
+    Reply reply;
+    bool taken = take_mesh(&result, &reply);
+    SmCode code = taken ? SM_OK : fail_child(&result, &child, file->name, error);
     free(result.reply);
+    if (!taken) return code;
+    code = reply.error.code ? sm_fail(error, SM_INPUT, "%s", reply.error.text)
+                            : sm_mesh_check(&reply.mesh, file->name, error);
+    if (code) sm_mesh_free(&reply.mesh);
+    if (left_out) *left_out = reply.left_out;
+    *mesh = reply.mesh;
     return code;
 }

@@ -24,7 +24,6 @@ typedef struct {
     Buffer chunk; /* of bytes in a GLB */
     Buffer *buffer;
     size_t buffers;
-    double most; /* triangles, and a third of the vertices */
 } Gltf;
 
 typedef struct {
@@ -135,7 +134,7 @@ static bool read_gltf_buffer(Gltf *gltf, size_t index)
         return FAIL("buffers[%zu] is not base64" SM_AGAIN, index);
     if (uri && !data && !read_gltf_file(gltf, uri, buffer)) return false;
     if (buffer->owned) buffer->bytes = buffer->owned;
-    gltf->most += buffer->owned ? (double)buffer->size : 0;
+    gltf->draft->most += buffer->owned ? (double)buffer->size : 0;
     if (length <= (double)buffer->size) return true;
     return FAIL("buffers[%zu] has %zu of %.0f bytes" SM_AGAIN, index, buffer->size, length);
 }
@@ -144,7 +143,6 @@ static bool read_buffers(Gltf *gltf)
 {
     gltf->buffers = json_array_size(json_object_get(gltf->root, "buffers"));
     gltf->buffer = sm_alloc(gltf->buffers, sizeof *gltf->buffer);
-    gltf->most = 2e6 + (double)(gltf->draft->end - gltf->draft->begin);
     for (size_t b = 0; b < gltf->buffers; b++)
         if (!read_gltf_buffer(gltf, b)) return false;
     return true;
@@ -242,7 +240,7 @@ static double *read_accessor(Gltf *gltf, json_t *object, const char *key, const 
     elements.normalized = normalized;
     bool good = set_type(gltf, type, &elements);
     if (good &&
-        (strcmp(is, kind) != 0 || !(number >= 0 && number <= fmin(3 * gltf->most, INT_MAX))))
+        (strcmp(is, kind) != 0 || !(number >= 0 && number <= fmin(3 * gltf->draft->most, INT_MAX))))
         good = FAIL("%s is not %s, or too many" SM_AGAIN, key, kind);
     bool given = !sparse || view >= 0;
     if (!good || (given && !find_elements(gltf, view, offset, number, &elements))) return NULL;
@@ -295,19 +293,9 @@ static bool get_transform(Gltf *gltf, json_t *node, Transform *transform)
 
 /* ---- meshes */
 
-static bool check_number(Gltf *gltf, double vertices, double triangles)
-{
-    const SmMesh *mesh = &gltf->draft->mesh;
-    if ((double)mesh->vertex_count + vertices <= 3 * gltf->most &&
-        (double)mesh->triangle_count + triangles <= gltf->most)
-        return true;
-    return FAIL(SM_PARTS_TOO_MANY, gltf->most / 1e6);
-}
-
 static bool add_gltf_vertices(Gltf *gltf, const Transform *transform, const double *position,
                               long count)
 {
-    if (!check_number(gltf, (double)count, 0)) return false;
     for (long v = 0; v < count; v++) {
         double p[3];
         for (int d = 0; d < 3; d++)
@@ -324,7 +312,6 @@ static bool add_gltf_triangles(Gltf *gltf, int mode, bool mirrored, const double
     double first = (double)draft->mesh.vertex_count;
     long step = mode == TRIANGLES ? 3 : 1;
     if (count % step) return sm_draft_fail(draft, "triangles of %ld corners" SM_AGAIN, count);
-    if (!check_number(gltf, 0, (double)(count / step))) return false;
     for (long c = 0; c + 2 < count; c += step) {
         bool turned = mirrored != (mode == STRIP && c % 2);
         const long at[3] = {mode == FAN ? 0 : c, turned ? c + 2 : c + 1, turned ? c + 1 : c + 2};

@@ -57,9 +57,10 @@ const char *sm_mesh_left_out(const SmMeshLeftOut *left_out, char text[SM_LEFT_OU
 /* ---- the bytes of a draft */
 
 /* Inflates all members into `owned`, which the caller frees. */
-static bool inflate_bytes(SmDraft *draft, const SmMeshFile *file, char **owned)
+static bool inflate_bytes(SmDraft *draft, char **owned)
 {
 #ifdef SM_ZLIB
+    const SmMeshFile *file = draft->file;
     z_stream stream = {.next_in = (unsigned char *)(uintptr_t)file->bytes};
     stream.avail_in = (unsigned)file->size;
     size_t room = 0, size = 0;
@@ -80,7 +81,6 @@ static bool inflate_bytes(SmDraft *draft, const SmMeshFile *file, char **owned)
            sm_draft_fail(draft, room > INT_MAX ? "over 1 GB when uncompressed; divide the mesh"
                                                : "not a whole gzip file" SM_AGAIN);
 #else
-    (void)file;
     (void)owned;
     return sm_draft_fail(draft, "gzip is read with zlib, which this program was built without; "
                                 "uncompress it");
@@ -105,26 +105,23 @@ static bool read_format(SmDraft *draft, const Format *format)
         return sm_draft_fail(draft, "the file is text in UTF-16; save it in UTF-8");
     if (size > 2 && !memcmp(draft->begin, "\xef\xbb\xbf", 3)) draft->begin += 3;
     draft->at = draft->begin;
+    draft->most = 2e6 + (double)size;
     draft->line = 1;
     return format->read(draft) && sm_draft_finish(draft);
 }
 
 /* Ends with the draft's mesh, or its points, in place. */
-static bool read_draft(SmDraft *draft, const SmMeshFile *file)
+static bool read_draft(SmDraft *draft)
 {
     bool compressed;
     char *owned = NULL;
-    const Format *format = format_of(file->suffix ? file->suffix : file->name, &compressed);
-    if (!format)
-        return sm_draft_fail(draft, "not a mesh file that can be read; save it as OBJ, PLY, STL, "
-                                    "OFF or glTF");
+    const Format *format = format_of(draft->file->name, &compressed);
+    if (!format) return sm_draft_fail(draft, SM_NO_MESH);
     if (!draft->of_points && format->read == sm_read_rows)
         return sm_draft_fail(draft,
                              "a point format holds only points, no triangles; " SM_POINTS_GO);
-    draft->begin = (const char *)file->bytes;
-    draft->end = draft->begin + file->size;
     draft->locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    bool good = (!compressed || inflate_bytes(draft, file, &owned)) && read_format(draft, format);
+    bool good = (!compressed || inflate_bytes(draft, &owned)) && read_format(draft, format);
     freelocale(draft->locale);
     sm_free_all(owned, draft->corner, draft->polygon);
     draft->at = NULL;
@@ -133,14 +130,21 @@ static bool read_draft(SmDraft *draft, const SmMeshFile *file)
 
 static SmDraft draft_of(const SmMeshFile *file, bool of_points, SmError *error)
 {
-    return (SmDraft){.file = file, .of_points = of_points, .error = error, .largest = -1};
+    const char *bytes = (const char *)file->bytes;
+    return (SmDraft){.file = file,
+                     .of_points = of_points,
+                     .error = error,
+                     .begin = bytes,
+                     .end = bytes + file->size,
+                     .largest = -1};
 }
 
-SmCode sm_mesh_read(const SmMeshFile *file, SmMesh *mesh, SmMeshLeftOut *left_out, SmError *error)
+SmCode sm_mesh_read_by(const SmMeshFile *file, bool (*read)(SmDraft *), SmMesh *mesh,
+                       SmMeshLeftOut *left_out, SmError *error)
 {
     SmError why;
     SmDraft draft = draft_of(file, false, error ? error : &why);
-    bool good = read_draft(&draft, file);
+    bool good = read(&draft);
     long others = draft.left_out.points + draft.left_out.lines;
     if (good && !draft.mesh.triangle_count)
         good =
@@ -152,12 +156,17 @@ SmCode sm_mesh_read(const SmMeshFile *file, SmMesh *mesh, SmMeshLeftOut *left_ou
     return good ? sm_mesh_prepare(mesh, file->name, error) : SM_INPUT;
 }
 
+SmCode sm_mesh_read(const SmMeshFile *file, SmMesh *mesh, SmMeshLeftOut *left_out, SmError *error)
+{
+    return sm_mesh_read_by(file, read_draft, mesh, left_out, error);
+}
+
 SmCode sm_mesh_read_points(const SmMeshFile *file, long *count, double (**position)[3],
                            double (**normal)[3], SmError *error)
 {
     SmError why;
     SmDraft draft = draft_of(file, true, error ? error : &why);
-    bool good = read_draft(&draft, file);
+    bool good = read_draft(&draft);
     if (good && (draft.mesh.triangle_count || !draft.mesh.vertex_count))
         good = sm_draft_fail(&draft, draft.mesh.triangle_count
                                          ? "it holds triangles, and no points alone"

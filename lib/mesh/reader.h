@@ -10,19 +10,13 @@
 
 #include "mesh.h"
 
-/* Of a small file whose parts would take minutes and all memory; how many million triangles. */
-#define SM_PARTS_TOO_MANY                                                                          \
-    "it uses its parts so often that they make more than %.2g million triangles, which a file of " \
-    "its size does not hold: export one of each part"
-
 /* Gives the bytes of a file beside the mesh, a glTF's buffer for instance; `name` is relative to
  * the mesh's folder and comes from the mesh. The caller frees `bytes`. False where there is no
  * `name` in the folder: nothing outside of it may be read. */
 typedef bool (*SmMeshBeside)(void *of, const char *name, unsigned char **bytes, size_t *size);
 
 typedef struct {
-    const char *name;   /* for its suffix and for messages */
-    const char *suffix; /* of its format; NULL: the name's */
+    const char *name; /* for its suffix and for messages */
     const unsigned char *bytes;
     size_t size;
     SmMeshBeside beside; /* NULL: there are no other files */
