@@ -170,6 +170,11 @@ def gltf_files():
     yield Case("gltf-gz.gltf.gz", zipped(good.text()), TETRA)
     yield Case("gltf-gz.glb.gz", zipped(good.binary()), TETRA)
     yield from files("gltf", None, {"utf16": codecs.BOM_UTF16_LE + good.text().decode().encode("utf-16-le")}, says="UTF-16")
+    for owner, other in (("meshes", "nodes"), ("nodes", "meshes")):  # a node's weights count, where it has any
+        weighted.json[owner][0]["weights"], weighted.json[other][0]["weights"] = [1], [0]
+        wanted = TETRA if other == "nodes" else TETRA.mapped(lambda *x: tuple(2 * a for a in x))
+        yield from files("gltf", wanted, {"morph-" + owner: weighted.text()}, may_refuse=other == "meshes")
+    del weighted.json["nodes"][0]["weights"]
     weighted.json["meshes"][0]["weights"] = [1]
     yield from files("gltf", TETRA.mapped(lambda *x: tuple(2 * a for a in x)), {"morph": weighted.text()}, may_refuse=True)
     for name, says in (("EXT_nobody_knows",) * 2, ("KHR_draco_mesh_compression", "Draco"), ("EXT_meshopt_compression",) * 2):

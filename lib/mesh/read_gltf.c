@@ -359,13 +359,19 @@ static bool add_gltf_primitive(Gltf *gltf, json_t *primitive, const Transform *t
 static bool add_mesh(Gltf *gltf, json_t *mesh, const Transform *transform)
 {
     const json_t *list = json_object_get(mesh, "primitives");
-    const json_t *weights = json_object_get(mesh, "weights");
-    for (size_t w = 0; w < json_array_size(weights); w++)
-        if (json_number_value(json_array_get(weights, w)) != 0)
-            return FAIL("it uses morph targets, which are not read; apply "
-                        "them before exporting");
     for (size_t p = 0; p < json_array_size(list); p++)
         if (!add_gltf_primitive(gltf, json_array_get(list, p), transform)) return false;
+    return true;
+}
+
+/* A node's weights replace its mesh's (glTF 2.0, 3.7.2.2). */
+static bool check_weights(Gltf *gltf, const json_t *node, const json_t *mesh)
+{
+    const json_t *own = json_object_get(node, "weights");
+    const json_t *weights = own ? own : json_object_get(mesh, "weights");
+    for (size_t w = 0; w < json_array_size(weights); w++)
+        if (json_number_value(json_array_get(weights, w)) != 0)
+            return FAIL("it uses morph targets, which are not read; apply them before exporting");
     return true;
 }
 
@@ -416,6 +422,7 @@ static bool add_gltf_nodes(Gltf *gltf, const json_t *list, const Transform *oute
         Transform whole;
         compose(outer, &own, &whole);
         if (index >= 0 && !(mesh = get_item(gltf, "meshes", index))) return false;
+        if (mesh && !check_weights(gltf, node, mesh)) return false;
         if (mesh && !(instances ? add_instances(gltf, mesh, instances, &whole)
                                 : add_mesh(gltf, mesh, skin ? &identity : &whole)))
             return false;
