@@ -167,9 +167,9 @@ SM_INLINE void end_of(Lsm *lsm, int layer, int thread, SmLaps *laps, bool plain,
     static void name(Lsm *lsm, int layer, int thread, SmLaps *laps)                                \
     {                                                                                              \
         if (lsm->pass->plain)                                                                      \
-            FOR_SIDE(lsm->side, name##_of, lsm, layer, thread, laps, true)                         \
+            FOR_SIDE(lsm->side, name##_of, lsm, layer, thread, laps, true);                        \
         else                                                                                       \
-            FOR_SIDE(lsm->side, name##_of, lsm, layer, thread, laps, false)                        \
+            FOR_SIDE(lsm->side, name##_of, lsm, layer, thread, laps, false);                       \
     }
 PHASE(subsums)
 PHASE(solve)

@@ -11,20 +11,22 @@
 #define AT_SIDE(number, ...)                                                                       \
     case number:                                                                                   \
         WITH_SIDE(number, __VA_ARGS__);                                                            \
-        break;
+        break
 #define FOR_SIDE(side, ...)                                                                        \
-    switch (side) {                                                                                \
-        AT_SIDE(3, __VA_ARGS__)                                                                    \
-        AT_SIDE(5, __VA_ARGS__)                                                                    \
-        AT_SIDE(7, __VA_ARGS__)                                                                    \
-        AT_SIDE(9, __VA_ARGS__)                                                                    \
-        AT_SIDE(11, __VA_ARGS__)                                                                   \
-        AT_SIDE(13, __VA_ARGS__)                                                                   \
-        AT_SIDE(15, __VA_ARGS__)                                                                   \
-        AT_SIDE(17, __VA_ARGS__)                                                                   \
-    default:                                                                                       \
-        WITH_SIDE(side, __VA_ARGS__);                                                              \
-    }
+    do {                                                                                           \
+        switch (side) {                                                                            \
+            AT_SIDE(3, __VA_ARGS__);                                                               \
+            AT_SIDE(5, __VA_ARGS__);                                                               \
+            AT_SIDE(7, __VA_ARGS__);                                                               \
+            AT_SIDE(9, __VA_ARGS__);                                                               \
+            AT_SIDE(11, __VA_ARGS__);                                                              \
+            AT_SIDE(13, __VA_ARGS__);                                                              \
+            AT_SIDE(15, __VA_ARGS__);                                                              \
+            AT_SIDE(17, __VA_ARGS__);                                                              \
+        default:                                                                                   \
+            WITH_SIDE(side, __VA_ARGS__);                                                          \
+        }                                                                                          \
+    } while (0)
 
 /* The row of this name among `rows`, which are `width` values wide. */
 SM_INLINE const real *named(const real *rows, uint64_t name, int width)

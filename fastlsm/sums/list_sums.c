@@ -180,8 +180,10 @@ SM_INLINE void subsums_up_of(const Lsm *lsm, int layer, bool plain, int side)
     }
 }
 
-static void subsums_up(const Lsm *lsm, int layer,
-                       bool plain){FOR_SIDE(lsm->side, subsums_up_of, lsm, layer, plain)}
+static void subsums_up(const Lsm *lsm, int layer, bool plain)
+{
+    FOR_SIDE(lsm->side, subsums_up_of, lsm, layer, plain);
+}
 
 SM_INLINE void subsums_down_of(const Lsm *lsm, int layer, bool plain, int side)
 {
@@ -200,8 +202,10 @@ SM_INLINE void subsums_down_of(const Lsm *lsm, int layer, bool plain, int side)
     }
 }
 
-static void subsums_down(const Lsm *lsm, int layer,
-                         bool plain){FOR_SIDE(lsm->side, subsums_down_of, lsm, layer, plain)}
+static void subsums_down(const Lsm *lsm, int layer, bool plain)
+{
+    FOR_SIDE(lsm->side, subsums_down_of, lsm, layer, plain);
+}
 
 SM_INLINE void regions_of(const Lsm *lsm, const int *region, bool plain, Row *out, int side)
 {
@@ -216,9 +220,9 @@ void lsm_list_kernels_regions(const Lsm *lsm, const int *region, bool plain, vec
     Row rows[SM_LANES];
     const real *row[SM_LANES];
     if (plain)
-        FOR_SIDE(lsm->side, regions_of, lsm, region, true, rows)
+        FOR_SIDE(lsm->side, regions_of, lsm, region, true, rows);
     else
-        FOR_SIDE(lsm->side, regions_of, lsm, region, false, rows)
+        FOR_SIDE(lsm->side, regions_of, lsm, region, false, rows);
     for (int lane = 0; lane < SM_LANES; lane++) row[lane] = (const real *)&rows[lane];
     sums_of_rows(row, plain, sum);
 }
@@ -253,9 +257,9 @@ static void block_sums(const Lsm *lsm, long block, bool plain, vec sum[6])
     const int *region = lsm->block_region + block * SM_LANES;
     real(*out)[SM_LANES] = (real(*)[SM_LANES])sum;
     if (plain)
-        FOR_SIDE(lsm->side, particles_of, lsm, region, true, out)
+        FOR_SIDE(lsm->side, particles_of, lsm, region, true, out);
     else
-        FOR_SIDE(lsm->side, particles_of, lsm, region, false, out)
+        FOR_SIDE(lsm->side, particles_of, lsm, region, false, out);
 }
 
 const LsmListKernels lsm_list_kernels = {

@@ -135,8 +135,7 @@ typedef struct {
     /* The field of every particle; `values` is [particles][3]. SM_GOAL after
      * step() may cost a recomputation-free copy only if the last call was goals(). */
     void (*get)(SmEngine *engine, SmField field, double (*values)[3]);
-    /* The same of `count` particles only, in O(count). NULL of engines of double precision alone.
-     */
+    /* The same of `count` particles only, in O(count). NULL of engines without single precision. */
     void (*get_some)(SmEngine *engine, SmField field, long count, const long *number,
                      double (*values)[3]);
     void (*set)(SmEngine *engine, SmField field,

@@ -446,7 +446,8 @@ static void follow_tears(sb_body *body)
 }
 
 /* In single precision a place is known to a hundredth of a cell at 1e5 cells, where a step of that
- * length takes a body from its origin. */
+ * length takes a body from its origin. Looks at one particle of each instance: the rest of a body
+ * that is whole goes with it. */
 static int check_speed(const sb_body *body, sb_error *error)
 {
     const double most = 1e5 * body->voxels.cell / body->h;

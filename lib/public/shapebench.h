@@ -355,8 +355,7 @@ void sb_body_free(sb_body *body);
 
 /* Steps of h seconds (fastlsm eqs. 1 and 2). Allocates nothing, but where handles or obstacles have
  * come or gone since the last one. 20 to 200 ns a particle, step and thread. SB_INPUT: the steps
- * are made, and one took a body of single precision so far that its shape is lost: above 1e5 cells.
- */
+ * are made, and the last took a body of single precision beyond 1e5 cells: its shape is lost. */
 int sb_body_step(sb_body *body, int64_t steps, sb_error *error);
 
 typedef struct {
