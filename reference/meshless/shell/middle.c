@@ -58,17 +58,27 @@ SmCode ref_middle_fit(const RefChart *chart, const RefSamples *samples, long nod
     return code;
 }
 
-/* What follows from x's derivatives. */
+/* Where functions of nodes in a row meet alone, as in a stem, the surface is a line, and what is
+ * above 0 of its area, in squares of its tangents, is rounding. */
+static const double LEAST_AREA = 1e-10;
+
+/* What follows from x's derivatives: of a line, nothing. */
 static void complete(RefFrame *frame)
 {
     double(*a)[3] = frame->tangent, up[2][3];
+    double metric[3] = {sm_dot(a[0], a[0]), sm_dot(a[1], a[1]), sm_dot(a[0], a[1])};
     sm_cross(a[0], a[1], frame->normal);
     frame->area = sqrt(sm_dot(frame->normal, frame->normal));
+    if (frame->area <= LEAST_AREA * (metric[0] + metric[1])) {
+        memset(frame->normal, 0, sizeof frame->normal);
+        frame->area = 0;
+        return;
+    }
     sm_normalize(frame->normal);
     double squared = frame->area * frame->area;
-    frame->inverse[0] = sm_dot(a[1], a[1]) / squared;
-    frame->inverse[1] = sm_dot(a[0], a[0]) / squared;
-    frame->inverse[2] = -sm_dot(a[0], a[1]) / squared;
+    frame->inverse[0] = metric[1] / squared;
+    frame->inverse[1] = metric[0] / squared;
+    frame->inverse[2] = -metric[2] / squared;
     for (int d = 0; d < 3; d++) {
         up[0][d] = frame->inverse[0] * a[0][d] + frame->inverse[2] * a[1][d];
         up[1][d] = frame->inverse[2] * a[0][d] + frame->inverse[1] * a[1][d];
@@ -79,7 +89,7 @@ static void complete(RefFrame *frame)
 
 RefFrame ref_middle_at(const double (*X)[3], int count, const int *node, const double (*part)[6])
 {
-    RefFrame frame;
+    RefFrame frame = {.area = 0};
     double sum[3][6];
     ref_frame_sums.derive(count, node, part, X, sum);
     for (int d = 0; d < 3; d++) {
@@ -136,14 +146,15 @@ void ref_middle_frames(const double (*X)[3], RefSamples *samples)
     }
 }
 
-long ref_middle_areas(const double (*X)[3], RefSamples *samples)
+double ref_middle_areas(const double (*X)[3], RefSamples *samples)
 {
+    double sum = 0;
     ref_middle_frames(X, samples);
     for (long p = 0; p < samples->count; p++) {
         const RefFrame *frame = samples->frame + p;
         samples->area[p] = frame->area * samples->weight[p];
         samples->trace[p] = frame->inverse[0] + frame->inverse[1];
-        if (!(samples->area[p] > 0)) return p;
+        sum += samples->area[p];
     }
-    return -1;
+    return sum;
 }

@@ -24,7 +24,7 @@ void ref_middle_press(const RefSamples *samples, double pressure, double (*force
 /* Fills in the samples' frames. */
 void ref_middle_frames(const double (*X)[3], RefSamples *samples);
 
-/* The same, and areas and traces; returns the first without an area, or -1. */
-long ref_middle_areas(const double (*X)[3], RefSamples *samples);
+/* The same, and areas and traces; returns the whole area. */
+double ref_middle_areas(const double (*X)[3], RefSamples *samples);
 
 #endif

@@ -18,7 +18,8 @@ static inline int ref_samples_quarter(int quarter)
     return 7 + 3 * (quarter & 1) + 18 * (quarter >> 1);
 }
 
-/* The middle surface at a point. Pairs of indices are in the order 11, 22, 12. */
+/* The middle surface at a point. Pairs of indices are in the order 11, 22, 12. Where it is a line,
+ * area, normal and what follows from them are 0. */
 typedef struct {
     double x[3];
     double tangent[2][3]; /* a_k = x,k */

@@ -229,6 +229,33 @@ TEST(a_map_that_is_not_conformal_costs_no_stiffness)
     ref_shell_free(&shell);
 }
 
+/* Where nodes are in a row, as in a stem, rounding alone makes a surface of them: that is none. */
+TEST(a_line_has_no_surface)
+{
+    needs_solver();
+    RefChart chart = square_chart();
+    RefShellOptions options = {
+        .across = 9, .basis = REF_MLS_PLANE_LINEAR, .thickness = thickness, .material = material};
+    RefShell shell;
+    shell_of(&chart, &options, &shell);
+    RefShape shape = ref_shape_create(&shell.nodes);
+    for (int wide = 0; wide < 2; wide++) {
+        RefFrame frame;
+        for (long n = 0; n < shell.nodes.count; n++)
+            for (int d = 0; d < 3; d++)
+                shell.X[n][d] = 0.1 * (d + 1) * shell.nodes.position[n][0] +
+                                (wide && d == 2 ? 1e-6 * shell.nodes.position[n][1] : 0);
+        for (double x = 0.03; x < 1; x += 0.1) {
+            assert_true(ref_shell_at(&shell, (double[3]){x, 0.6 * x}, &shape, &frame));
+            assert_int_equal(frame.area > 0, wide);
+            assert_int_equal(frame.inverse[1] > 0, wide);
+            assert_true(fabs(sm_dot(frame.normal, frame.normal) - wide) < 1e-9);
+        }
+    }
+    ref_shape_free(&shape);
+    ref_shell_free(&shell);
+}
+
 /* A node whose cover ends at a place is none that covers it, however that is rounded. */
 TEST(covers_end_where_they_end)
 {

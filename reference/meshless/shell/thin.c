@@ -247,11 +247,8 @@ SmCode ref_thin_build(const double (*X)[3], RefSamples *samples, long nodes, dou
     if (code != SM_OK) return code;
     RefPairs pairs = ref_samples_pairs(samples, nodes);
     code = ref_pairs_check(&pairs, error);
-    long bad = code == SM_OK ? ref_middle_areas(X, samples) : -1;
-    if (bad >= 0)
-        code = sm_fail(error, SM_INPUT,
-                       "the shell's middle surface has no area at the parameters (%g, %g)",
-                       samples->theta[bad][0], samples->theta[bad][1]);
+    if (code == SM_OK && !(ref_middle_areas(X, samples) > 0))
+        code = sm_fail(error, SM_INPUT, "the shell's middle surface has no area");
     if (code == SM_OK) *soft = integrate_all(samples, thickness, material, &pairs);
     if (code == SM_OK) ref_pairs_matrices(&pairs, material->density, matrices);
     ref_pairs_free(&pairs);
