@@ -86,8 +86,8 @@ static const char help[] =
     "instruction sets, compiler, libraries, and whether the processor's counters can be read. Else "
     "say what is in mesh files (OBJ, PLY, STL, OFF, glTF and what else Assimp reads, or "
     "shape:NAME): triangles, vertices, components, edges that are open, shared by more than two "
-    "triangles or flipped, bounding box, volume (of closed ones), and whether it can be simulated "
-    "as a solid.\v"
+    "triangles or flipped, bounding box, volume (of closed ones), cavities, and whether it can be "
+    "simulated as a solid.\v"
     "With several meshes each gets its say; the exit code is that of the last one that cannot be "
     "read. --format json prints one array with an object for every mesh, or one object of the "
     "machine.\n" BENCH_EXIT_CODES;
@@ -164,6 +164,9 @@ static void print_text(const char *name, const Facts *facts)
     printf("  size          %.6g x %.6g x %.6g\n", m->high[0] - m->low[0], m->high[1] - m->low[1],
            m->high[2] - m->low[2]);
     print_volume(m);
+    if (m->cavities)
+        printf("  cavities      %ld, of volume %.6g: a lattice fills them\n", m->cavities,
+               m->cavity_volume);
     printf("  solid         %s: %s\n", facts->solid ? "yes" : "no", facts->verdict);
     if (facts->solid)
         printf("  lattice       %ld particles, %ld cells of %.6g\n", facts->particles, facts->cells,
@@ -175,14 +178,15 @@ static json_t *to_json(const char *name, const Facts *facts)
     const SmMeshInfo *m = &facts->mesh;
     json_t *text = json_string(name);
     return json_pack(
-        "{s:o, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:b, s:[fff], s:[fff], s:o, s:b, "
-        "s:o, s:f}",
+        "{s:o, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:f, s:b, s:[fff], s:[fff], "
+        "s:o, s:b, s:o, s:f}",
         "mesh", text ? text : json_string("(name is no UTF-8)"), "triangles",
         (json_int_t)m->triangles, "vertices", (json_int_t)m->vertices, "components",
         (json_int_t)m->components, "open_edges", (json_int_t)m->open_edges, "nonmanifold_edges",
         (json_int_t)m->nonmanifold_edges, "flipped_edges", (json_int_t)m->flipped_edges,
         "degenerate", (json_int_t)m->degenerate, "duplicates", (json_int_t)m->duplicates,
-        "particles", (json_int_t)facts->particles, "cells", (json_int_t)facts->cells, "watertight",
+        "particles", (json_int_t)facts->particles, "cells", (json_int_t)facts->cells, "cavities",
+        (json_int_t)m->cavities, "cavity_volume", m->cavity_volume, "watertight",
         (int)m->watertight, "low", m->low[0], m->low[1], m->low[2], "high", m->high[0], m->high[1],
         m->high[2], "volume", isfinite(m->volume) ? json_real(m->volume) : json_null(), "solid",
         (int)facts->solid, "verdict", bench_json_text(facts->verdict), "cell", facts->cell);

@@ -305,35 +305,62 @@ static bool is_degenerate(double edge[3][3])
     return sqrt(sm_dot(normal, normal)) <= no_height * longest;
 }
 
+typedef struct {
+    double six_volumes;
+    SmBox box;
+} Component;
+
+/* Components inside out, as the whole is not, in the box of the largest. */
+static void count_cavities(long count, const Component *part, SmMeshInfo *info)
+{
+    const Component *largest = part;
+    for (long c = 1; c < count; c++)
+        if (fabs(part[c].six_volumes) > fabs(largest->six_volumes)) largest = part + c;
+    for (long c = 0; c < count; c++)
+        if (part[c].six_volumes * info->volume < 0 &&
+            sm_box_holds(&largest->box, part[c].box.low) &&
+            sm_box_holds(&largest->box, part[c].box.high)) {
+            info->cavities++;
+            info->cavity_volume += fabs(part[c].six_volumes) / 6;
+        }
+}
+
 /* Adds the volume about the box's centre, where a mesh far from the origin loses no digits. */
-static void measure_triangles(const SmMesh *mesh, SmMeshInfo *info)
+static void measure_triangles(const SmMesh *mesh, const SmPieces *pieces, SmMeshInfo *info)
 {
     double six_volumes = 0, middle[3];
+    Component *part = sm_alloc((size_t)pieces->count, sizeof *part);
+    for (long c = 0; c < pieces->count; c++) part[c].box = sm_no_box();
     for (int a = 0; a < 3; a++) middle[a] = 0.5 * info->low[a] + 0.5 * info->high[a];
     for (long t = 0; t < mesh->triangle_count; t++) {
+        Component *of = part + pieces->piece[t];
         double p[3][3], edge[3][3], normal[3];
         for (int c = 0; c < 3; c++) sm_subtract(mesh->position[mesh->triangle[t][c]], middle, p[c]);
         for (int c = 0; c < 3; c++) sm_subtract(p[(c + 1) % 3], p[c], edge[c]);
+        for (int c = 0; c < 3; c++) sm_box_add(&of->box, p[c]);
         info->degenerate += is_degenerate(edge);
         sm_cross(p[1], p[2], normal);
+        of->six_volumes += sm_dot(p[0], normal);
         six_volumes += sm_dot(p[0], normal);
     }
     info->volume += six_volumes / 6;
+    count_cavities(pieces->count, part, info);
+    free(part);
 }
 
 SmMeshInfo sm_mesh_info(const SmMesh *mesh)
 {
     SmMeshInfo info = count_edges(mesh, NULL);
     info.watertight = info.triangles && !info.open_edges && !info.nonmanifold_edges;
-    SmPieces pieces;
-    sm_mesh_pieces(mesh, &pieces);
-    info.components = pieces.count;
-    sm_pieces_free(&pieces);
-    info.duplicates = count_duplicates(mesh);
     SmBox box = bounding_box(mesh);
     memcpy(info.low, box.low, sizeof info.low);
     memcpy(info.high, box.high, sizeof info.high);
-    measure_triangles(mesh, &info);
+    info.duplicates = count_duplicates(mesh);
+    SmPieces pieces;
+    sm_mesh_pieces(mesh, &pieces);
+    info.components = pieces.count;
+    measure_triangles(mesh, &pieces, &info);
+    sm_pieces_free(&pieces);
     return info;
 }
 

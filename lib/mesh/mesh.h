@@ -24,6 +24,8 @@ typedef struct {
     long flipped_edges;       /* used by two triangles of opposite orientation */
     long degenerate;          /* triangles of no area */
     long duplicates;          /* triangles whose three corners an earlier one has too */
+    long cavities;            /* components turned the other way, within the largest one's box, */
+    double cavity_volume;     /* and theirs together: a lattice fills them */
     bool watertight;          /* no open and no non-manifold edge */
     double low[3], high[3];   /* bounding box */
     double volume;            /* signed: negative for a mesh that is inside out; NaN where edges are

@@ -103,6 +103,31 @@ TEST(test_volume_only_where_triangles_bound_one)
     sm_mesh_free(&mesh);
 }
 
+/* A cube within a cube, turned inside out, is a hole in it; one turned as it is, or beside it, is
+ * none. */
+TEST(test_cavities)
+{
+    for (int turned = 0; turned < 2; turned++)
+        for (int beside = 0; beside < 2; beside++) {
+            SmMesh mesh = cube(), inner = cube();
+            mesh.position = sm_realloc(mesh.position, 16, sizeof *mesh.position);
+            for (int v = 0; v < 8; v++)
+                for (int a = 0; a < 3; a++)
+                    mesh.position[8 + v][a] = 0.25 + 0.5 * inner.position[v][a] + beside;
+            mesh.vertex_count = 16;
+            for (int t = 0; t < 12; t++) {
+                const int *corner = inner.triangle[t];
+                add_triangle(&mesh, 8 + corner[0], 8 + corner[1 + turned], 8 + corner[2 - turned]);
+            }
+            SmMeshInfo info = sm_mesh_info(&mesh);
+            assert_int_equal(info.cavities, turned && !beside);
+            assert_near(info.cavity_volume, turned && !beside ? 0.125 : 0, 1e-15);
+            assert_near(info.volume, turned ? 0.875 : 1.125, 1e-15);
+            sm_mesh_free(&mesh);
+            sm_mesh_free(&inner);
+        }
+}
+
 TEST(test_merge_drops)
 {
     SmMesh mesh = loose_cube();
