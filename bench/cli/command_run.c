@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../../reference/meshless/surface/surface_nets.h"
+#include "../check/full_check.h"
 #include "../engines.h"
 #include "../play/mode.h"
 #include "../play/recording.h"
@@ -20,12 +21,14 @@ typedef struct {
     BenchOverride chosen;
     const char *scene, *output, *w, *width;
     bool no_output, overwrite, hash;
+    int check;  /* the last state alone, or all */
     long nodes; /* 0: not given */
     int mode;   /* of an elastic body, to be shown; 0: it is simulated */
     int record; /* BenchRecord */
     BenchFields fields;
 } Options;
 
+static const char *const checks[] = {"end", "full", NULL};
 static const char *const records[] = {"particles", "nodes", NULL}; /* BenchRecord from 1 */
 
 /* "speed,strain" */
@@ -69,6 +72,11 @@ static const BenchSetting settings[] = {
          "mode that deforms it, from 1, in so many frames; its frequency, and that with half the "
          "nodes"),
      BENCH_IN(Options, mode), 1, 994},
+    {BENCH_OPTION("check", "WHAT", 1,
+                  "end: hold the last state to brute force (default); full: then play the scene "
+                  "again by 1 thread, each frame's end held to brute force, and by every other "
+                  "number to 4 or to the machine's cores, held to the same bits"),
+     BENCH_IN(Options, check), BENCH_CHOICES(checks)},
     {.section = 2, .help = "What is written:"},
     {BENCH_OUTPUT_OPTION("FILE.vtkhdf", 2, "Trajectory (default: SCENE.vtkhdf in this folder)"),
      BENCH_IN(Options, output)},
@@ -101,6 +109,8 @@ static void check(const struct argp_state *state, void *record)
     options->scene = options->common.word[0];
     if (bench_given(given, "particles") && bench_given(given, "cell"))
         bench_usage(state, "either --particles or --cell");
+    if (options->mode && options->check)
+        bench_usage(state, "--mode shows a mode and simulates nothing that --check could hold");
     if (options->no_output &&
         (options->output || options->record || options->fields || options->overwrite))
         bench_usage(state,
@@ -513,6 +523,12 @@ static SmCode run(const Options *options, const BenchMachine *machine, SmError *
     if (!code) {
         code = record(options, &play, machine, path, error);
         bench_playback_free(&play);
+    }
+    if (!code && options->check) {
+        BenchProgress progress;
+        bench_progress_start(&progress, options->common.quiet);
+        code = bench_full_check(&scene, &body, type, options->common.seed, machine->cores,
+                                &progress, error);
     }
     bench_body_free(&body);
     ref_mpu_free(&loaded.given);
