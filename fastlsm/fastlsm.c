@@ -62,10 +62,18 @@ static void keep_goals(Lsm *lsm, long block, int blocks, vec (*sum)[6], SmLaps *
 void lsm_goals(Lsm *lsm)
 {
     static const LsmPass goals = {.end = keep_goals};
+    size_t lanes = (size_t)lsm->tiles * SM_LANES;
+    short *last = lsm->last; /* from which the next step's rotations begin: stays */
+    real *stretch = lsm->stretch;
+    lsm->last = sm_copy(last, 6 * lanes, sizeof *last);
+    if (stretch) lsm->stretch = sm_copy(stretch, 9 * lanes, sizeof *stretch);
     lsm->damp_now = false; /* keep no centres: goals take their place */
     lsm->g = lsm->centre;
     for (int l = 0; l < lsm->layers; l++) lsm->sweeps[l] = 0;
     lsm_run(lsm, &goals, NULL);
+    sm_free_all(lsm->last, lsm->stretch);
+    lsm->last = last;
+    lsm->stretch = stretch;
 }
 
 /* M_r and c0_r of a tile from its sums of m~ where x = (1, 1, 1). */

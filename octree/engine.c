@@ -482,7 +482,11 @@ static void engine_step(SmEngine *e, SmLaps *laps)
 static long engine_contacts(SmEngine *e, double (*turn)[9], SmContact **contact)
 {
     *contact = NULL;
-    return e->contacts ? oct_contacts_list(e->contacts, e->base.structure.cell, turn, contact) : 0;
+    if (!e->contacts) return 0;
+    OctState *bodies = oct_turn(e->oct);
+    long count = oct_contacts_list(e->contacts, e->base.structure.cell, turn, contact);
+    oct_turn_back(e->oct, bodies);
+    return count;
 }
 
 static void engine_push(SmEngine *e, long count, const long *particle, const double (*impulse)[3])

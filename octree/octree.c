@@ -370,9 +370,30 @@ static void step_all(Oct *oct, bool goals, SmLaps *laps, bool apart)
     }
 }
 
+OctState *oct_turn(Oct *oct)
+{
+    OctState *bodies = oct->body;
+    size_t blocks = (size_t)oct->block_room * SM_LANES;
+    oct->body = sm_copy(bodies, (size_t)oct->instances, sizeof *bodies);
+    for (long i = 0; i < oct->instances; i++) {
+        oct->body[i].last = sm_copy(bodies[i].last, 6 * blocks, sizeof(short));
+        if (bodies[i].stretch)
+            oct->body[i].stretch = sm_copy(bodies[i].stretch, 9 * blocks, sizeof(real));
+    }
+    step_all(oct, true, NULL, false);
+    return bodies;
+}
+
+void oct_turn_back(Oct *oct, OctState *bodies)
+{
+    for (long i = 0; i < oct->instances; i++) sm_free_all(oct->body[i].last, oct->body[i].stretch);
+    free(oct->body);
+    oct->body = bodies;
+}
+
 void oct_goals(Oct *oct)
 {
-    step_all(oct, true, NULL, false);
+    oct_turn_back(oct, oct_turn(oct));
 }
 
 static void step(Oct *oct, SmLaps *laps, bool apart)

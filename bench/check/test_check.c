@@ -60,8 +60,14 @@ static void plate_free(Plate *plate)
     free(plate->v);
 }
 
+static void set(Plate *plate)
+{
+    plate->type->set(plate->engine, SM_POSITION, (const double(*)[3])plate->x);
+    plate->type->set(plate->engine, SM_VELOCITY, (const double(*)[3])plate->v);
+}
+
 /* The plate turned by a right angle about y; if `fold`, first folded onto itself along the middle
- * and pressed flat; if `press`, onto a line. */
+ * and pressed flat; if `press`, onto a line. A step from there turns its regions. */
 static void place(Plate *plate, bool fold, bool press)
 {
     bool octree = !strcmp(plate->type->name, "octree"); /* whose nodes are in cells' middles */
@@ -75,9 +81,9 @@ static void place(Plate *plate, bool fold, bool press)
         plate->x[p][2] = press ? 0 : fold ? -fabs(along) : -along;
         for (int d = 0; d < 3; d++) plate->v[p][d] = random_unit(&seed);
     }
-    plate->type->set(plate->engine, SM_POSITION, (const double(*)[3])plate->x);
-    plate->type->set(plate->engine, SM_VELOCITY, (const double(*)[3])plate->v);
-    plate->type->goals(plate->engine);
+    set(plate);
+    plate->type->step(plate->engine, NULL);
+    set(plate);
 }
 
 static BenchDeviation check_plate(Plate *plate)
@@ -312,7 +318,8 @@ TEST(wrong_contacts_are_invalid)
             if (bench_check_verdict(&found, sizeof reason, reason))
                 fail_msg("%s, %s: fault %d is not seen", wrong.name, wrong.precision, f);
             if (!strstr(reason, "brute force")) fail_msg("fault %d: %s", f, reason);
-            assert_int_equal(found.turn_error > BENCH_TURN_TOLERANCE, fault == TURNED);
+            assert_true(fault == STALE ||
+                        (found.turn_error > BENCH_TURN_TOLERANCE) == (fault == TURNED));
             assert_true(fault == TURNED || found.contacts_wrong > 0);
             assert_true(fault == ALL_DEEPER || fault == STALE || found.contacts_wrong <= 2);
         }

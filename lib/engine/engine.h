@@ -186,8 +186,8 @@ typedef struct {
     SmCode (*break_links)(SmEngine *engine, long count, const int (*pair)[2], SmError *error);
 
     /* Contacts of the present positions, but those with obstacles, in any order; returns how many.
-     * The caller frees them. The octree's cells are turned as its regions were when it last found
-     * goals: `turn`, [particles][9] by rows or NULL; lattice engines leave it alone. Only
+     * The caller frees them. The octree's cells are turned as its regions are in the present state:
+     * `turn`, [particles][9] by rows or NULL; lattice engines leave it alone. Only
      * `contacts` of count() change. NULL of engines whose bodies do not collide. */
     long (*contacts)(SmEngine *engine, double (*turn)[9], SmContact **contact);
 
