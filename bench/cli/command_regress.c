@@ -27,7 +27,7 @@ typedef struct {
     double block, threshold; /* ms; a share, NaN: auto */
     BenchRegressionFormat format;
     enum { BY_TIME, BY_CYCLES } by;
-    bool counters, overwrite;
+    bool counters, overwrite, quick;
 } Options;
 
 static void take_threshold(const struct argp_state *state, const char *text, void *member)
@@ -61,6 +61,10 @@ static const BenchSetting settings[] = {
          "Rounds of two processes of each build and scene (default: 10 or as many as the test "
          "needs, or 3 beside a file)"),
      BENCH_IN(Options, rounds), 1, 1000},
+    {BENCH_OPTION("quick", NULL, 2,
+                  "As few rounds as can show a difference, and a third of the repeats: sees what "
+                  "is large"),
+     BENCH_IN(Options, quick)},
     {BENCH_REPEATS_OPTION(Options, repeats, 10000,
                           " in a process (default: 201; beside a file as there)")},
     {BENCH_BLOCK_OPTION(Options, block, " (default: 0.5; beside a file as there)")},
@@ -218,7 +222,7 @@ static void choose_tasks(Session *session)
         BenchTask *task = &session->task[t];
         if (!task->threads) task->threads = options->common.threads;
         if (options->repeats || !task->repeats)
-            task->repeats = options->repeats ? options->repeats : 201;
+            task->repeats = options->repeats ? options->repeats : options->quick ? 67 : 201;
         if (options->block > 0 || !(task->block > 0))
             task->block = options->block > 0 ? options->block : 0.5;
         task->block = fmin(fmax(task->block, 0.001), 60000);
@@ -231,7 +235,10 @@ static SmCode choose_rounds(Session *session, SmError *error)
     const Options *options = session->options;
     int times = session->tasks * (options->by == BY_CYCLES ? 1 : BENCH_TIMES);
     int least = bench_compare_rounds(times);
-    session->rounds = options->rounds ? options->rounds : options->baseline ? 3 : 10;
+    session->rounds = options->rounds     ? options->rounds
+                      : options->quick    ? least
+                      : options->baseline ? 3
+                                          : 10;
     if (options->baseline || session->rounds >= least) return SM_OK;
     if (!options->rounds) {
         session->rounds = least;

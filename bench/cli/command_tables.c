@@ -20,7 +20,7 @@
 typedef struct {
     BenchCommon common;
     BenchOverride chosen;
-    const char *paper, *output, *baselines;
+    const char *paper, *output, *baselines, *checked;
     BenchNames given;
     int repeats;
     double block;
@@ -49,6 +49,10 @@ static const BenchSetting settings[] = {
     {BENCH_IN(Options, chosen), .table = bench_override_settings, .who = BENCH_BY_TABLES},
     {BENCH_REPEATS_OPTION(Options, repeats, 10000, " (default: 15)")},
     {BENCH_BLOCK_OPTION(Options, block, " (default: 20)")},
+    {BENCH_OPTION("checked", "HASH", 2,
+                  "The state that is timed has been checked by this program, and state_hash was "
+                  "HASH: it is not checked again, and any other is INVALID"),
+     BENCH_IN(Options, checked)},
     BENCH_FORMAT_OPTION(Options, format, 3),
     {BENCH_OPTION("explain", NULL, 3,
                   "Say below a text table all that stands behind each row, not only a line each"),
@@ -265,6 +269,7 @@ static SmCode measure_scene(const Options *options, const Choice *choice, BenchP
                                  .block_seconds = options->block / 1e3,
                                  .threads = options->common.threads,
                                  .seed = options->common.seed,
+                                 .checked = options->checked,
                                  .progress = progress};
     code = bench_measure(&scene, &body, type, &params, row, error);
     bench_body_free(&body);

@@ -202,5 +202,14 @@ TEST(a_states_hash_is_the_same_wherever_it_is_held)
                  1 + b);
         run(arguments, &result);
         if (!strstr(result.out, hash)) fail_msg("no %s in %s", hash, result.out);
+        for (int wrong = 0; wrong < 2; wrong++) { /* and is not checked again where it is known */
+            snprintf(arguments, sizeof arguments,
+                     "tables --scene %s.cfg --repeats 1 --block 1 --checked %s%s", name, hash,
+                     wrong ? "0" : "");
+            run(arguments, &result);
+            assert_int_equal(result.code, wrong);
+            const char *said = wrong ? "that was checked" : "  checked before; ";
+            if (!strstr(result.out, said)) fail_msg("no '%s' in %s", said, result.out);
+        }
     }
 }

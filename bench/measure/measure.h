@@ -3,9 +3,10 @@
  * How. The scene's disturbance is applied and its `settle` steps run; that state is the start of
  * every timed segment, so that all repeats do the same work on a body in motion. The check compares
  * the goal positions there, and again where the last segment ended. Between the two it is timed
- * (step_timer.h). A shell that breaks cannot be put back: it is played through its frames three
- * times, with clocks, and checked at rest and in the end (burst.h); `repeats`, `block_seconds` and
- * `events` mean nothing of it. */
+ * (step_timer.h). A start that another process of this program has checked, `checked` being its
+ * hash, is timed alone: the same program does the same from there. A shell that breaks cannot be
+ * put back: it is played through its frames three times, with clocks, and checked at rest and in
+ * the end (burst.h); `repeats`, `block_seconds` and `events` mean nothing of it. */
 #ifndef BENCH_MEASURE_H
 #define BENCH_MEASURE_H
 

@@ -24,6 +24,7 @@ typedef struct BenchMeasureParams {
     double block_seconds; /* 0: 0.02 */
     int threads;
     unsigned long seed;
+    const char *checked;      /* the start's hash, where that has been checked; or NULL */
     const BenchEvent *events; /* [BENCH_COUNTERS] what is counted; NULL: the processor's */
     BenchProgress *progress;  /* or NULL */
 } BenchMeasureParams;

@@ -1,5 +1,6 @@
 #include "ab_runner.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +15,10 @@ enum { PATH = BENCH_DRAFT_PATH, WORDS = 32 };
 /* What has become of a task. */
 typedef struct {
     bool there[BENCH_BUILDS]; /* which builds have it, as far as is known */
-    char reason[224];         /* why the old one has not */
+    char checked[BENCH_BUILDS][sizeof((BenchRow *)0)->state_hash]; /* their state's, or empty */
+    bool refused[BENCH_BUILDS]; /* the build cannot be told that */
+    int repeats;                /* of processes that are; 0: not known */
+    char reason[224];           /* why the old one has not */
 } State;
 
 typedef struct {
@@ -26,22 +30,26 @@ typedef struct {
 } Session;
 
 /* The words of a `tables` process; numbers are written into `number`. */
-static void make_words(const BenchAbRunner *runner, const BenchTask *task, const char *program,
-                       const char *output, char number[4][32], const char *word[WORDS])
+static void make_words(const BenchAbRunner *runner, const BenchTask *task, const State *state,
+                       BenchBuild build, const char *output, char number[4][32],
+                       const char *word[WORDS])
 {
     int count = 0;
+    const char *checked = state->checked[build][0] ? state->checked[build] : NULL;
     const struct {
         const char *option, *value;
     } option[] = {
-        {"--paper", runner->paper},       {"--scene", task->scene}, {"--engine", task->engine},
-        {"--precision", task->precision}, {"--threads", number[0]}, {"--repeats", number[1]},
-        {"--block", number[2]},           {"--seed", number[3]},    {"-o", output},
+        {"--paper", runner->paper}, {"--scene", task->scene},
+        {"--engine", task->engine}, {"--precision", task->precision},
+        {"--threads", number[0]},   {"--repeats", number[1]},
+        {"--block", number[2]},     {"--seed", number[3]},
+        {"--checked", checked},     {"-o", output},
     };
     snprintf(number[0], 32, "%d", task->threads > 0 ? task->threads : 1);
-    snprintf(number[1], 32, "%d", task->repeats);
+    snprintf(number[1], 32, "%d", checked ? state->repeats : task->repeats);
     snprintf(number[2], 32, "%.6g", task->block);
     snprintf(number[3], 32, "%lu", runner->seed);
-    word[count++] = program;
+    word[count++] = runner->program[build];
     word[count++] = "tables";
     word[count++] = "--quiet";
     for (size_t i = 0; i < sizeof option / sizeof *option; i++) {
@@ -81,8 +89,18 @@ static void say_why(const State *state, BenchAbScene *samples)
         snprintf(old->reason, sizeof old->reason, "%s", state->reason);
 }
 
-static SmCode keep(Session *session, State *state, BenchBuild build, int round, const char *path,
-                   SmError *error)
+/* Of what is one row, from then on. */
+static void note_checked(const BenchTask *task, BenchBuild build, const BenchRow *row, State *state)
+{
+    if (!row->valid || row->busy || state->refused[build]) return;
+    double repeat = 2 * (row->steps + 2) * row->total_ms / 1e3;
+    int fit = (int)fmin(BENCH_PROCESS_SECONDS / repeat, task->repeats);
+    if (!state->repeats) state->repeats = fit > 21 || fit == task->repeats ? fit : 21;
+    memcpy(state->checked[build], row->state_hash, sizeof row->state_hash);
+}
+
+static SmCode keep(Session *session, const BenchTask *task, State *state, BenchBuild build,
+                   int round, const char *path, SmError *error)
 {
     BenchRow *rows;
     BenchMachine machine;
@@ -98,6 +116,7 @@ static SmCode keep(Session *session, State *state, BenchBuild build, int round, 
         if (session->runner->by_cycles && rows[i].valid && !bench_row_counted(&rows[i]))
             state->there[BENCH_OLD] = state->there[BENCH_NEW] = false;
     }
+    if (count == 1) note_checked(task, build, rows, state);
     bench_rows_free(rows, count);
     if (!session->measured[build]) session->machine[build] = machine;
     session->measured[build] = true;
@@ -112,16 +131,21 @@ static SmCode run_process(Session *session, const BenchTask *task, BenchBuild bu
     const char *word[WORDS];
     snprintf(output, sizeof output, "%.4000s/rows.h5", runner->folder);
     snprintf(log, sizeof log, "%.4000s/process.txt", runner->folder);
-    make_words(runner, task, runner->program[build], output, number, word);
+    make_words(runner, task, state, build, output, number, word);
     BenchProcess process = {.word = word, .output = log};
     BenchProcessEnd end;
     SmCode code = bench_process_run(&process, &end, error);
     if (code) return code;
+    if (end.status == SM_USAGE && state->checked[build][0]) {
+        state->refused[build] = true;
+        state->checked[build][0] = 0;
+        return run_process(session, task, build, round, state, error);
+    }
     /* an INVALID row is stored before the process says so; a scene that cannot run stores nothing
      */
     bool there = (end.status == SM_OK || end.status == SM_INVALID) && access(output, F_OK) == 0;
     state->there[build] = there;
-    code = there ? keep(session, state, build, round, output, error)
+    code = there ? keep(session, task, state, build, round, output, error)
                  : failed(task, build, round, end.status, log, state, error);
     unlink(output);
     return code;

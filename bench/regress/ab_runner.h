@@ -2,7 +2,10 @@
  *
  * A round of a scene is four processes, old new new old, and the next one new old old new, so that
  * what drifts slowly hits both builds alike; a round beside a stored file is two of the new one.
- * Each process is `PROGRAM tables --scene NAME ...`, which checks the scene before it times it. */
+ * Each process is `PROGRAM tables --scene NAME ...`, which checks the scene before it times it. The
+ * state that is timed is the same in all of a build's: those after its first are told its hash and
+ * do not check it again (`tables --checked`, unless the build is too old for it), and take no more
+ * repeats than fit in BENCH_PROCESS_SECONDS, but 21. */
 #ifndef BENCH_AB_RUNNER_H
 #define BENCH_AB_RUNNER_H
 
@@ -31,6 +34,7 @@ typedef struct {
 } BenchAbRunner;
 
 enum { BENCH_TURNS = 4 }; /* of a round */
+#define BENCH_PROCESS_SECONDS 0.3
 
 /* Whose turn it is. */
 BenchBuild bench_ab_turn(int round, int turn);

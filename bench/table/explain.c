@@ -45,6 +45,8 @@ static void brief_row(FILE *file, const BenchRow *row, int width)
     }
     if (bench_row_of_elastic(row))
         fprintf(file, "all %d checks hold", checks_made(row));
+    else if (isnan(row->goal_error))
+        fputs("checked before", file);
     else
         fprintf(file, "goals %.1e, drift %.0e%s", row->goal_error, row->drift,
                 row->plain ? " plain" : "");
