@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Figure of a sweep file (`shapebench sweep -o FILE.h5`): cost, deviation and stiffness over w and epsilon, and
-the front of cost against deviation.
+what a stiffness costs, with the front.
 
 Needs Debian's python3-h5py and python3-matplotlib, which scripts/setup installs. Exit codes: 0 drawn; 2 wrong
 usage; 3 not a sweep file, or nothing in it to draw, or a package is missing; 4 cannot be written."""
@@ -89,32 +89,30 @@ def name_some(axes, names, at, others):
         taken.append(box)
 
 
-def front(axes, plan, point):
-    cost, off = point["total_ms"], 100 * point["path_rms"]
-    shown = numpy.isfinite(cost) & numpy.isfinite(off)
-    axes.set_title("cost against deviation; rings: the front", fontsize=9)
-    axes.set_xlabel("milliseconds a step")
-    axes.set_ylabel("path off, percent of the body's size")
+def front(axes, point):
+    stiff, cost, off = point["frequency"], point["total_ms"], 100 * point["path_rms"]
+    shown = numpy.isfinite(stiff) & numpy.isfinite(cost) & numpy.isfinite(off)
+    axes.set_title("what a stiffness costs; rings: nothing as stiff is cheaper and nearer", fontsize=9)
+    axes.set_xlabel("first frequency of the regular beam, Hz")
+    axes.set_ylabel("milliseconds a step")
     if not shown.any():
-        axes.text(0.5, 0.5, "no valid point has both", ha="center", transform=axes.transAxes)
+        axes.text(0.5, 0.5, "no valid point has all three", ha="center", transform=axes.transAxes)
         return
     for sampled, engine in engines(point):
         some = shown & (point["engine"] == engine)
         if some.any():
-            dots = axes.scatter(cost[some], off[some], c=point["w"][some], marker="o" if sampled else "s", s=18,
-                                cmap="plasma", vmin=point["w"].min(), vmax=point["w"].max(), label=engine)
+            dots = axes.scatter(stiff[some], cost[some], c=off[some], marker="o" if sampled else "s", s=18,
+                                cmap="plasma", vmin=0, vmax=max(off[shown].max(), 1e-6), label=engine)
     best = numpy.flatnonzero(shown & (point["front"] != 0))
-    best = best[numpy.lexsort((off[best], cost[best]))]
-    axes.scatter(cost[best], off[best], marker="o", s=46, facecolors="none", edgecolors="0.3", linewidth=0.7)
-    best = best[off[best] <= numpy.minimum.accumulate(off[best])]  # others cost the same but for noise
-    axes.step(cost[best], off[best], where="post", color="0.3", linewidth=1, zorder=0)
+    best = best[numpy.lexsort((stiff[best], point["sampled"][best]))]
+    axes.scatter(stiff[best], cost[best], marker="o", s=46, facecolors="none", edgecolors="0.3", linewidth=0.7)
     axes.set_xscale("log")
-    axes.set_ylim(bottom=-0.03 * max(off[shown].max(), 1e-6))
+    axes.set_yscale("log")
     axes.legend()
-    axes.figure.colorbar(dots, ax=axes, pad=0.02, label=unit_of_w(plan))
+    axes.figure.colorbar(dots, ax=axes, pad=0.02, label="path off, percent of the body's size")
     some = best[:: max(1, len(best) // 5)]
     name_some(axes, [f"w {point['w'][i]:g}" + (f", {point['epsilon'][i]:g}" if point["sampled"][i] else "")
-                     for i in some], numpy.c_[cost, off][some], numpy.c_[cost, off][shown])
+                     for i in some], numpy.c_[stiff, cost][some], numpy.c_[stiff, cost][shown])
 
 
 def main():
@@ -127,7 +125,7 @@ def main():
             (axes[1][0], point["frequency"], "first frequency of the regular beam, Hz", True))
     for place, values, title, logarithmic in maps:
         heat_map(place, plan, point, values, title, logarithmic)
-    front(axes[1][1], plan, point)
+    front(axes[1][1], point)
     figure.suptitle(f"{plan['scene']}: {len(point['w'])} of {plan['points']} points", fontsize=10)
     write(figure, arguments.output, arguments.overwrite)
 

@@ -49,16 +49,19 @@ static const BenchSetting settings[] = {
     BENCH_CAMPAIGN_OPTIONS(Options, 3, "point", BENCH_STORES("point")),
     {BENCH_OPTION(
          "recommend", NULL, 4,
-         "Say which w and epsilon of each engine to take, for --budget, --deviation and "
-         "--stiffness (default: at most 1% more deviation than the engine's least), and the "
-         "command that runs it"),
+         "Say which w and epsilon of each engine to take for --stiffness within --deviation and "
+         "--budget, and the command that runs it; without --stiffness what there is to choose "
+         "from: "
+         "soft, middle and stiff"),
      BENCH_IN(Options, recommend)},
-    {BENCH_OPTION("stiffness", "HZ", 4, "Wish: the beam's first frequency"),
+    {BENCH_OPTION("stiffness", "HZ", 4,
+                  "The wanted stiffness: the beam's first frequency, met within 10%"),
      BENCH_IN(Options, wish.stiffness), 1e-6, 1e6},
     {BENCH_OPTION("deviation", "PERCENT", 4,
-                  "Wish: the surface at most so far from full resolution, of the body's size, rms"),
+                  "Constraint: the surface is at most so far from full resolution, rms, of the "
+                  "body's size"),
      BENCH_IN(Options, wish.deviation), 0, 1000},
-    {BENCH_OPTION("budget", "MS", 4, "Wish: a step takes at most so long"),
+    {BENCH_OPTION("budget", "MS", 4, "Constraint: at most MS milliseconds a step"),
      BENCH_IN(Options, wish.budget), 1e-6, 1e9},
     {0},
 };
@@ -101,7 +104,7 @@ static SmCode show(const void *record, BenchCampaign *sweep, SmError *error)
     if (options->recommend || wished) {
         bool table = format == BENCH_AS_CSV || format == BENCH_AS_JSON;
         if (!table) putchar('\n');
-        bench_recommend(table ? stderr : stdout, sweep->plan, sweep->point, sweep->count, wish);
+        bench_recommend(table ? stderr : stdout, sweep, wish);
     }
     return bench_campaign_verdict(sweep, error);
 }

@@ -109,8 +109,9 @@ const BenchField bench_point_fields[] = {
      .scale = 100},
     {FIELD(TEXT, path_why), MEANS(NULL, "why they are not there")},
     {FIELD(BOOL, front),
-     MEANS(NULL, "1: no other valid point is at most as far off (`path_rms`) and cheaper beyond "
-                 "the noise: its `total_high_ms` below this one's `total_low_ms`"),
+     MEANS(NULL, "1: no other valid point with a `frequency` within 10% of this one's is at most "
+                 "as far off (`path_rms`) and cheaper beyond the noise: its `total_high_ms` below "
+                 "this one's `total_low_ms`"),
      .may_differ = true, .title = "front", .left = true},
     BENCH_STAMP_FIELDS(BenchPoint, "that the point took"),
     {FIELD(INT, samples), MEANS(NULL, "repeats; 0 of an invalid point")},
@@ -133,13 +134,14 @@ BenchPoint bench_point_none(void)
 
 bool bench_point_judged(const BenchPoint *p)
 {
-    return p->valid && isfinite(p->total_ms) && isfinite(p->path_rms);
+    return p->valid && isfinite(p->total_ms) && isfinite(p->path_rms) && p->frequency > 0;
 }
 
 /* Quartiles that are not known overlap with all. */
 static bool beats(const BenchPoint *a, const BenchPoint *b)
 {
-    return a->total_high_ms < b->total_low_ms && a->path_rms <= b->path_rms;
+    return a->total_high_ms < b->total_low_ms && a->path_rms <= b->path_rms &&
+           fabs(log(a->frequency / b->frequency)) <= log(BENCH_ALIKE);
 }
 
 void bench_front_mark(BenchPoint *point, long count)

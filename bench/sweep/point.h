@@ -46,14 +46,18 @@ extern const int bench_point_field_count;
 /* A point not measured yet: zero, with every quantity NaN. */
 BenchPoint bench_point_none(void);
 
-/* Is it valid, with a time and a deviation? */
+/* Is it valid, with a time, a deviation and a frequency? */
 bool bench_point_judged(const BenchPoint *point);
 
-/* Sets `front`: no other valid point is cheaper a step beyond the noise and at most as far from
- * full resolution (path_rms, which has no noise). Cheaper beyond the noise is what ends below where
- * the other one begins, of the quartiles of their times (total_low_ms..total_high_ms): points whose
- * times overlap do not displace each other, even where one of them deviates less, or the front
- * would change from run to run. Points without both figures are not on it. O(points^2). */
+/* Beams are equally stiff where their frequencies differ by at most this ratio. */
+#define BENCH_ALIKE 1.1
+
+/* Sets `front`: no other judged point that is equally stiff is cheaper a step beyond the noise and
+ * at most as far from full resolution (path_rms, which has no noise). Softer is cheaper, and a
+ * lattice never deviates: without its stiffness the softest lattice would beat all others. Cheaper
+ * beyond the noise is what ends below where the other one begins, of the quartiles of their times
+ * (total_low_ms..total_high_ms): points whose times overlap do not displace each other, or the
+ * front would change from run to run. O(points^2). */
 void bench_front_mark(BenchPoint *point, long count);
 
 #endif

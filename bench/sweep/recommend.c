@@ -1,6 +1,7 @@
 #include "recommend.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "../engines.h"
@@ -8,8 +9,6 @@
 #include "../system/quote.h"
 #include "../table/grid.h"
 
-static const double near_enough = 0.1; /* of a stiffness: within 10% */
-static const double some_more = 0.01;  /* of the body's size: deviation where nothing is wished */
 static const double noise = 0.1; /* points minutes apart differ by more than their quartiles say */
 enum { MOST_BOUGHT = 6, WORD = 4200 /* a path, every character quoted */ };
 
@@ -19,10 +18,8 @@ typedef struct {
     long count;
     const char *engine;
     const BenchWish *wish;
-    long parts;       /* least of any point */
-    double deviation; /* at most, share of the body's size; INFINITY: any */
-    double least;     /* deviation of any point */
-    double far;       /* ratio to the stiffness at most */
+    long parts; /* least of any point */
+    double far; /* ratio to the stiffness at most */
 } Choice;
 
 static bool of_engine(const Choice *c, const BenchPoint *p)
@@ -35,39 +32,34 @@ static bool whole(const Choice *c, const BenchPoint *p)
     return of_engine(c, p) && p->parts <= c->parts;
 }
 
-/* Ratio of the point's stiffness to that wished, 1 or more. */
+/* Ratio of the point's stiffness to that wished, 1 or more; NaN where none is wished. */
 static double off(const BenchPoint *p, const BenchWish *wish)
 {
-    return p->frequency > 0 ? exp(fabs(log(p->frequency / wish->stiffness))) : INFINITY;
+    return exp(fabs(log(p->frequency / wish->stiffness)));
+}
+
+/* Whole, and near enough to the stiffness wished; any where none is. */
+static bool fits(const Choice *c, const BenchPoint *p)
+{
+    return whole(c, p) && !(off(p, c->wish) > c->far);
 }
 
 static bool allowed(const Choice *c, const BenchPoint *p)
 {
-    const BenchWish *wish = c->wish;
-    if (!whole(c, p) || p->path_rms > c->deviation) return false;
-    if (!isnan(wish->budget) && !(fmax(p->total_ms, p->total_high_ms) <= wish->budget))
-        return false;
-    return isnan(wish->stiffness) || off(p, wish) <= c->far;
+    return fits(c, p) && !(100 * p->path_rms > c->wish->deviation) &&
+           !(fmax(p->total_ms, p->total_high_ms) > c->wish->budget);
 }
 
 static Choice choose(const BenchPoint *point, long count, const char *engine, const BenchWish *wish)
 {
-    Choice c = {point, count, engine, wish, 0, INFINITY, INFINITY, INFINITY};
-    long parts = -1;
+    Choice c = {point, count, engine, wish, -1, INFINITY};
     for (long i = 0; i < count; i++)
-        if (of_engine(&c, &point[i]) && (parts < 0 || point[i].parts < parts))
-            parts = point[i].parts;
-    c.parts = parts;
-    for (long i = 0; i < count; i++)
-        if (whole(&c, &point[i])) c.least = fmin(c.least, point[i].path_rms);
-    bool wished = !isnan(wish->stiffness) || !isnan(wish->deviation) || !isnan(wish->budget);
-    if (!isnan(wish->deviation)) c.deviation = wish->deviation / 100;
-    if (!wished) c.deviation = c.least + some_more;
-    if (isnan(wish->stiffness)) return c;
+        if (of_engine(&c, &point[i]) && (c.parts < 0 || point[i].parts < c.parts))
+            c.parts = point[i].parts;
     double nearest = INFINITY;
     for (long i = 0; i < count; i++)
         if (allowed(&c, &point[i])) nearest = fmin(nearest, off(&point[i], wish));
-    c.far = fmax(nearest, 1 + near_enough);
+    c.far = fmax(nearest, BENCH_ALIKE);
     return c;
 }
 
@@ -83,25 +75,6 @@ static bool as_cheap(const BenchPoint *p, const BenchPoint *cheapest)
            p->total_low_ms <= (1 + noise) * cheapest->total_high_ms;
 }
 
-/* Is the one that deviates least wanted, whatever it costs within the budget? */
-static bool exact(const BenchWish *wish)
-{
-    return !isnan(wish->budget) && isnan(wish->stiffness);
-}
-
-static const BenchPoint *cheapest_of(const Choice *c)
-{
-    const BenchPoint *best = NULL;
-    double least = INFINITY;
-    for (long i = 0; i < c->count && exact(c->wish); i++)
-        if (allowed(c, &c->point[i])) least = fmin(least, c->point[i].path_rms);
-    for (long i = 0; i < c->count; i++)
-        if (allowed(c, &c->point[i]) && c->point[i].path_rms <= least &&
-            (!best || cheaper(&c->point[i], best)))
-            best = &c->point[i];
-    return best;
-}
-
 static bool better(const BenchPoint *a, const BenchPoint *b)
 {
     return a->path_rms < b->path_rms || (a->path_rms == b->path_rms && a->w < b->w);
@@ -109,8 +82,12 @@ static bool better(const BenchPoint *a, const BenchPoint *b)
 
 static const BenchPoint *best_of(const Choice *c)
 {
-    const BenchPoint *cheapest = cheapest_of(c), *best = cheapest;
-    for (long i = 0; i < c->count && cheapest; i++)
+    const BenchPoint *cheapest = NULL;
+    for (long i = 0; i < c->count; i++)
+        if (allowed(c, &c->point[i]) && (!cheapest || cheaper(&c->point[i], cheapest)))
+            cheapest = &c->point[i];
+    const BenchPoint *best = cheapest;
+    for (long i = 0; i < c->count; i++)
         if (allowed(c, &c->point[i]) && as_cheap(&c->point[i], cheapest) &&
             better(&c->point[i], best))
             best = &c->point[i];
@@ -149,80 +126,53 @@ void bench_recommend_command(const BenchPlan *plan, const BenchPoint *point, siz
              epsilon, cell, strcmp(plan->precision, "double") != 0 ? "" : " --precision double");
 }
 
-static void say_wish(FILE *file, const Choice *c)
+static const BenchEngine *planned(const BenchCampaign *sweep, int e)
 {
-    const BenchWish *wish = c->wish;
-    const char *and = "for ";
-    if (!isnan(wish->stiffness)) fprintf(file, "%sa beam of %.4g Hz", and, wish->stiffness);
-    if (!isnan(wish->stiffness)) and = " and ";
-    if (c->far > 1 + near_enough && isfinite(c->far)) fputs(" (nothing is within 10% of it)", file);
-    if (!isnan(wish->deviation))
-        fprintf(file, "%sa deviation of at most %.4g%%", and, wish->deviation);
-    else if (isfinite(c->deviation) && c->deviation > some_more)
-        fprintf(file, "%sa deviation of at most %.3g%%, 1%% more than its least", and,
-                100 * c->deviation);
-    else if (isfinite(c->deviation))
-        fputs("whatever is cheapest", file); /* a lattice: none deviates */
-    if (!isnan(wish->deviation)) and = " and ";
-    if (!isnan(wish->budget)) fprintf(file, "%sa step of at most %.4g ms", and, wish->budget);
+    return bench_engine_planned(((const BenchPlan *)sweep->plan)->engines, e);
 }
 
-/* How many cost the same, and how stiff they are. */
-static void say_alike(FILE *file, const Choice *c)
+/* "octree w 1 and epsilon 0: 0.0245 ms a step of 370 nodes, a beam of 0.435 Hz that sags ..." */
+static void say_figures(FILE *file, const char *before, const BenchPoint *p)
 {
-    const BenchPoint *cheapest = cheapest_of(c);
-    double low = INFINITY, high = 0;
-    int alike = 0;
-    for (long i = 0; i < c->count; i++) {
-        const BenchPoint *p = &c->point[i];
-        if (!allowed(c, p) || !as_cheap(p, cheapest)) continue;
-        if (exact(c->wish) && p->path_rms > cheapest->path_rms) continue;
-        alike++;
-        low = fmin(low, p->frequency);
-        high = fmax(high, p->frequency);
-    }
-    if (alike < 2) return;
-    fprintf(file, "  %d points cost the same within the noise", alike);
-    if (high > low)
-        fprintf(file, ", with beams of %.3g to %.3g Hz: --stiffness chooses", low, high);
-    fputs(".\n", file);
-}
-
-static void say_point(FILE *file, const BenchPlan *plan, const Choice *c, const BenchPoint *p)
-{
-    char ms[BENCH_GRID_TEXT], command[3 * WORD];
-    bool tree = bench_engine(p->engine)->sampled, cells = !strcmp(plan->width, "cells");
+    char ms[BENCH_GRID_TEXT];
+    bool tree = bench_engine(p->engine)->sampled;
     bench_grid_number(p->total_ms, ms);
-    fprintf(file, "%s: ", c->engine);
-    say_wish(file, c);
-    fprintf(file, " take w %g %s", p->w,
-            !tree   ? "(cells)"
-            : cells ? "(finest cells)"
-                    : "(edges of each node's own cell)");
+    fprintf(file, "%s%s w %g", before, p->engine, p->w);
     if (tree) fprintf(file, " and epsilon %g", p->epsilon);
     fprintf(file, ": %s ms a step of %ld %s", ms, p->particles, tree ? "nodes" : "particles");
     if (p->parts > 1)
         fprintf(file, " in %ld parts that no region joins, as in all points", p->parts);
-    if (isfinite(p->frequency))
-        fprintf(file,
-                ", a beam of %.3g Hz that sags %.3g%% of its length in the limit of small sags",
-                p->frequency, 100 * p->sag);
+    fprintf(file, ", a beam of %.3g Hz that sags %.3g%% of its length, ", p->frequency,
+            100 * p->sag);
     if (tree)
-        fprintf(file,
-                ", the surface %.3g%% of the body's size off full resolution (at most %.3g%%), "
-                "goals %.3g cells off epsilon 0.\n",
-                100 * p->path_rms, 100 * p->path_most, p->goal_rms);
+        fprintf(file, "the surface %.3g%% of the body's size off full resolution.\n",
+                100 * p->path_rms);
     else
-        fputs(", itself full resolution.\n", file);
+        fputs("itself full resolution.\n", file);
+}
+
+static void say_point(FILE *file, const BenchPlan *plan, const Choice *c, const BenchPoint *p)
+{
+    char command[3 * WORD];
+    const BenchWish *wish = c->wish;
+    fprintf(file, "For a beam of %.4g Hz", wish->stiffness);
+    if (c->far > BENCH_ALIKE) fputs(" (nothing is within 10% of it)", file);
+    if (!isnan(wish->deviation))
+        fprintf(file, " and a deviation of at most %.4g%%", wish->deviation);
+    if (!isnan(wish->budget)) fprintf(file, " and a step of at most %.4g ms", wish->budget);
+    say_figures(file, " take ", p);
     bench_recommend_command(plan, p, sizeof command, command);
     fprintf(file, "  %s\n", command);
 }
 
 static void say_none(FILE *file, const Choice *c)
 {
-    double cheapest = INFINITY;
-    for (long i = 0; i < c->count; i++)
-        if (whole(c, &c->point[i])) cheapest = fmin(cheapest, c->point[i].total_ms);
+    double cheapest = INFINITY, least = INFINITY;
+    for (long i = 0; i < c->count; i++) {
+        if (!whole(c, &c->point[i])) continue;
+        cheapest = fmin(cheapest, c->point[i].total_ms);
+        least = fmin(least, c->point[i].path_rms);
+    }
     if (!isfinite(cheapest)) {
         fprintf(file, "%s: no recommendation: no valid point with a deviation is in the sweep.\n",
                 c->engine);
@@ -233,7 +183,7 @@ static void say_none(FILE *file, const Choice *c)
             "the least deviation is %.3g%%.\n",
             c->engine, isnan(c->wish->budget) ? "" : " the budget",
             !isnan(c->wish->budget) && !isnan(c->wish->deviation) ? " and" : "",
-            isnan(c->wish->deviation) ? "" : " the deviation", cheapest, 100 * c->least);
+            isnan(c->wish->deviation) ? "" : " the deviation", cheapest, 100 * least);
 }
 
 /* From the least deviation on, each time what deviates least of what is cheaper. */
@@ -244,7 +194,7 @@ static void say_bought(FILE *file, const Choice *c)
         const BenchPoint *next = NULL;
         for (long i = 0; i < c->count; i++) {
             const BenchPoint *p = &c->point[i];
-            if (!whole(c, p) || (last && as_cheap(last, p))) continue;
+            if (!fits(c, p) || (last && as_cheap(last, p))) continue;
             if (!next || p->path_rms < next->path_rms ||
                 (p->path_rms == next->path_rms && cheaper(p, next)))
                 next = p;
@@ -254,7 +204,7 @@ static void say_bought(FILE *file, const Choice *c)
                 100 * next->path_rms, next->total_ms, next->w, next->epsilon);
         last = next;
     }
-    if (last) fputs(".\n", file);
+    fputs(".\n", file);
 }
 
 static void say_apart(FILE *file, const Choice *c)
@@ -264,25 +214,71 @@ static void say_apart(FILE *file, const Choice *c)
         apart += of_engine(c, &c->point[i]) && c->point[i].parts > c->parts;
     if (apart)
         fprintf(file,
-                "  Left out: %d point%s whose body falls apart; a w of 1 edge of each node's own "
+                "%s: left out: %d point%s whose body falls apart; a w of 1 edge of each node's own "
                 "cell holds together what touches.\n",
-                apart, apart == 1 ? "" : "s");
+                c->engine, apart, apart == 1 ? "" : "s");
 }
 
-void bench_recommend(FILE *file, const BenchPlan *plan, const BenchPoint *point, long count,
-                     const BenchWish *wish)
+/* ---- the question */
+
+/* In two digits, as the option has it. */
+static double rounded(double hz)
+{
+    char text[32];
+    snprintf(text, sizeof text, "%.1e", hz);
+    return strtod(text, NULL);
+}
+
+/* The softest and the stiffest beam that all engines with an allowed point reach; where they share
+ * none, what lies between; false: there is no such point. */
+static bool find_range(const BenchCampaign *sweep, const BenchWish *wish, double *low, double *high)
 {
     const BenchEngine *engine;
-    for (int e = 0; (engine = bench_engine_planned(plan->engines, e)); e++) {
-        Choice c = choose(point, count, engine->type[0]->name, wish);
-        const BenchPoint *best = best_of(&c);
-        if (!best) {
-            say_none(file, &c);
-            continue;
+    double softest = 0, stiffest = INFINITY;
+    for (int e = 0; (engine = planned(sweep, e)); e++) {
+        Choice c = choose(sweep->point, sweep->count, engine->type[0]->name, wish);
+        double least = INFINITY, most = 0;
+        for (long i = 0; i < c.count; i++) {
+            if (!allowed(&c, &c.point[i])) continue;
+            least = fmin(least, c.point[i].frequency);
+            most = fmax(most, c.point[i].frequency);
         }
-        say_point(file, plan, &c, best);
-        say_alike(file, &c);
-        if (engine->sampled) say_bought(file, &c);
-        say_apart(file, &c);
+        if (most > 0) softest = fmax(softest, least), stiffest = fmin(stiffest, most);
+    }
+    *low = rounded(fmin(softest, stiffest));
+    *high = rounded(fmax(softest, stiffest));
+    return isfinite(stiffest);
+}
+
+static void ask(FILE *file, const BenchCampaign *sweep, BenchWish wish)
+{
+    static const char *const names[] = {"soft", "middle", "stiff"};
+    const BenchEngine *engine;
+    double low, high;
+    if (!find_range(sweep, &wish, &low, &high)) return;
+    fputs("How stiff is the body to be? Pick one by its option, or any other frequency in Hz:\n", file);
+    for (int k = 0; k < 3 && (k == 0 || low < high); k++) {
+        wish.stiffness = k == 0 ? low : k == 1 ? rounded(sqrt(low * high)) : high;
+        fprintf(file, "  %s: --stiffness %g\n", names[k], wish.stiffness);
+        for (int e = 0; (engine = planned(sweep, e)); e++) {
+            Choice c = choose(sweep->point, sweep->count, engine->type[0]->name, &wish);
+            const BenchPoint *best = best_of(&c);
+            if (best) say_figures(file, "    ", best);
+        }
+    }
+}
+
+void bench_recommend(FILE *file, const BenchCampaign *sweep, const BenchWish *wish)
+{
+    const BenchEngine *engine;
+    bool asks = isnan(wish->stiffness);
+    if (asks) ask(file, sweep, *wish);
+    for (int e = 0; (engine = planned(sweep, e)); e++) {
+        Choice c = choose(sweep->point, sweep->count, engine->type[0]->name, wish);
+        const BenchPoint *best = best_of(&c);
+        if (best && !asks) say_point(file, sweep->plan, &c, best);
+        if (best && !asks && engine->sampled) say_bought(file, &c);
+        if (!best) say_none(file, &c);
+        if (best) say_apart(file, &c);
     }
 }

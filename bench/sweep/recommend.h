@@ -1,5 +1,5 @@
-/* recommend.h - which points of a sweep to take, engine by engine: a lattice is its own full
- * resolution, so engines' deviations do not compare. */
+/* recommend.h - which points of a sweep to take for a wanted stiffness, engine by engine: a lattice
+ * is its own full resolution, so engines' deviations do not compare. */
 #ifndef BENCH_RECOMMEND_H
 #define BENCH_RECOMMEND_H
 
@@ -14,12 +14,11 @@ typedef struct {
     double budget;    /* at most so many ms a step */
 } BenchWish;
 
-/* The engine's point that fulfils the wish, or -1. A stiffness is met within 10%, or else by what
- * is nearest; a budget by the upper quartile of the times. Of all that meet it, and the deviation,
- * the cheapest is taken; with a budget and no stiffness the one that deviates least. Where nothing
- * is wished, at most 1% more deviation than the engine's least. Points whose lower quartile is
- * within 10% of the cheapest's upper one are as cheap as that (equal structures in one sweep differ
- * so): of them the one that deviates least is taken, of those the one of the least w. Points whose
+/* The engine's point that fulfils the wish, whose stiffness is given, or -1. A budget is met by the
+ * upper quartile of the times; a stiffness within BENCH_ALIKE, or else by what is nearest. Of all
+ * that meet these and the deviation the cheapest is taken. Points whose lower quartile is within
+ * 10% of the cheapest's upper one are as cheap as that (equal structures in one sweep differ so):
+ * of them the one that deviates least is taken, of those the one of the least w. Points whose
  * bodies fall into more parts than others are left out. */
 long bench_recommend_point(const BenchPoint *point, long count, const char *engine,
                            const BenchWish *wish);
@@ -28,9 +27,10 @@ long bench_recommend_point(const BenchPoint *point, long count, const char *engi
 void bench_recommend_command(const BenchPlan *plan, const BenchPoint *point, size_t size,
                              char *command);
 
-/* Of every engine of the sweep what to take, why, how to run it; and of an octree what a budget of
- * deviation buys: from its least on, what costs less beyond that noise. */
-void bench_recommend(FILE *file, const BenchPlan *plan, const BenchPoint *point, long count,
-                     const BenchWish *wish);
+/* Prints what to take of every engine of the sweep, why, how to run it, and of an octree what
+ * deviates more and costs less at that stiffness. Without a stiffness it asks for one: three
+ * choices, of the beams that all engines reach the softest, the middle and the stiffest one, with
+ * what each engine has for it and the option that picks it. */
+void bench_recommend(FILE *file, const BenchCampaign *sweep, const BenchWish *wish);
 
 #endif

@@ -445,7 +445,7 @@ static void print_tail(FILE *file, BenchFormat format, const BenchCampaign *swee
           "small sags (of a soft one above 100%), first natural frequency. goals off: from epsilon "
           "0, finest cells, rms.\npath off: the surface from a lattice's of equal width (w cells) "
           "at full resolution, of the body's size, rms and most. "
-          "*: on the front of\ncost (ms/step) against deviation (path off).\n",
+          "*: nothing within 10% of\nits Hz is both cheaper (ms/step) and nearer (path off).\n",
           file);
     write_hosts(file, sweep);
     write_reasons(file, sweep);

@@ -14,10 +14,13 @@ TEST(the_front_is_marked)
         make_point(5, 2, 0.01, 1),    /* the same: neither beats the other */
         make_point(6, NAN, 0.001, 1), /* INVALID */
         make_point(7, 0.5, NAN, 1),   /* no deviation known */
+        make_point(8, 7, 0, 1.05),    /* dearer than 0, and as stiff within 10% */
+        make_point(9, 8, 0.03, 1.2),  /* on it: the only one so stiff */
     };
-    static const bool expected[] = {true, false, true, false, true, true, false, false};
-    bench_front_mark(point, 8);
-    for (int i = 0; i < 8; i++) assert_int_equal(point[i].front, expected[i]);
+    static const bool expected[] = {true, false, true,  false, true,
+                                    true, false, false, false, true};
+    bench_front_mark(point, 10);
+    for (int i = 0; i < 10; i++) assert_int_equal(point[i].front, expected[i]);
 }
 
 /* Whichever of two costs that differ by less than their spread comes out lower, the front stays. */
@@ -50,9 +53,8 @@ TEST(recommendations_meet_the_wish)
         BenchWish wish;
         long expected;
     } cases[] = {
-        {{NAN, NAN, NAN}, 2}, /* up to 1.8% */
-        {{NAN, 3, NAN}, 1},   {{NAN, 0.5, NAN}, -1}, {{20, NAN, NAN}, 1},  {{20, 1, NAN}, 2},
-        {{30, NAN, NAN}, 3},  {{NAN, NAN, 1.7}, 3},  {{NAN, NAN, 100}, 2}, {{NAN, 0.5, 3}, -1},
+        {{20, NAN, NAN}, 1},  {{20, 1, NAN}, 2}, {{30, NAN, NAN}, 3}, {{20, NAN, 1.7}, 1},
+        {{20, 0.5, NAN}, -1}, {{40, 1, NAN}, 2}, {{40, NAN, 1.2}, 1}, {{20, 0.5, 3}, -1},
     };
     for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
         assert_int_equal(bench_recommend_point(point, 6, "octree", &cases[c].wish),
@@ -62,47 +64,93 @@ TEST(recommendations_meet_the_wish)
                          costly ? -1 : 0);
     }
     assert_int_equal(bench_recommend_point(point + 4, 2, "octree", &cases[0].wish), -1);
-    point[2].parts = 4; /* falls apart, and the others do not */
-    assert_int_equal(bench_recommend_point(point, 6, "octree", &cases[0].wish), 1);
+    point[1].parts = 4; /* falls apart, and the others do not */
+    assert_int_equal(bench_recommend_point(point, 6, "octree", &cases[0].wish), 2);
 }
 
 /* What costs the same within its quartiles is chosen by what it does, in every run alike. */
 TEST(noise_does_not_choose)
 {
-    const BenchWish any = {NAN, NAN, NAN};
+    const BenchWish stiff = {20, NAN, NAN};
     for (int run = 0; run < 2; run++) {
-        BenchPoint lattice[] = {make_point(0, run ? 4.1 : 4, 0, 10),
+        BenchPoint lattice[] = {make_point(0, run ? 4.1 : 4, 0, 19),
                                 make_point(0, run ? 4 : 4.1, 0, 20)};
         lattice[1].w = 2;
-        assert_int_equal(bench_recommend_point(lattice, 2, "fastlsm", &any), 0);
-        BenchPoint tree[] = {make_point(1, run ? 2.05 : 2, 0.012, 10),
+        assert_int_equal(bench_recommend_point(lattice, 2, "fastlsm", &stiff), 0);
+        BenchPoint tree[] = {make_point(1, run ? 2.05 : 2, 0.012, 20),
                              make_point(2, run ? 2 : 2.05, 0.010, 20),
-                             make_point(3, 1.7, 0.03, 20)};
-        assert_int_equal(bench_recommend_point(tree, 3, "octree", &any), 1);
+                             make_point(3, 1.7, 0.03, 10)};
+        assert_int_equal(bench_recommend_point(tree, 3, "octree", &stiff), 1);
     }
+}
+
+/* What is said of the points to a wish. The caller frees it. */
+static char *say(BenchPlan *plan, BenchPoint *point, long count, const BenchWish *wish)
+{
+    char *text;
+    size_t size;
+    FILE *file = open_memstream(&text, &size);
+    bench_recommend(file, &(BenchCampaign){.plan = plan, .point = point, .count = count}, wish);
+    fclose(file);
+    return text;
+}
+
+/* The softest lattice is the cheapest, and none deviates: which of them is best only the user can
+ * say. The octree has nothing as stiff as the stiffest lattice, the lattice nothing as soft. */
+TEST(without_a_stiffness_there_is_no_best)
+{
+    BenchPlan plan = {.engines = "both", .scene = "hand", .width = "edges"};
+    BenchPoint point[] = {make_point(0, 1, 0, 0.52),   make_point(1, 0.1, 0.03, 0.4),
+                          make_point(3, 0.2, 0.04, 1), make_point(4, 2, 0, 1.01),
+                          make_point(7, 0.3, 0.05, 2), make_point(8, 4, 0, 3)};
+    BenchWish wish = {NAN, NAN, NAN};
+    char *all = say(&plan, point, 6, &wish);
+    assert_null(strstr(all, "take"));
+    static const char *const choices[] = {"  soft: --stiffness 0.52\n    fastlsm w 1: 1.00 ms",
+                                          "  middle: --stiffness 1\n    fastlsm w 2: 2.00 ms",
+                                          "  stiff: --stiffness 2\n    fastlsm w 3: 4.00 ms"};
+    const char *at = all;
+    for (int k = 0; k < 3; k++) {
+        at = strstr(at, choices[k]);
+        if (!at) fail_msg("no \"%s\" in:\n%s", choices[k], all);
+        wish.stiffness = strtod(strstr(at, "ness ") + 5, NULL); /* picks what is shown */
+        for (int e = 0; e < 2; e++) {
+            const char *engine = e ? "octree" : "fastlsm";
+            char shown[64];
+            const BenchPoint *p = &point[bench_recommend_point(point, 6, engine, &wish)];
+            snprintf(shown, sizeof shown, e ? "%s w %g and epsilon %g" : "%s w %g", engine, p->w,
+                     p->epsilon);
+            assert_non_null(strstr(at, shown));
+        }
+    }
+    free(all);
+    wish = (BenchWish){NAN, 3.5, NAN}; /* leaves the octree one */
+    char *few = say(&plan, point, 6, &wish);
+    assert_non_null(strstr(few, "--stiffness 0.4\n"));
+    assert_null(strstr(few, "epsilon 1"));
+    free(few);
+    wish = (BenchWish){NAN, 1, 0.5};
+    char *none = say(&plan, point, 6, &wish);
+    assert_memory_equal(none, "fastlsm: no recommendation: no point is within the budget", 56);
+    free(none);
 }
 
 TEST(what_is_recommended_can_be_run)
 {
     BenchPlan plan = {.engines = "both", .scene = "hand", .width = "edges"};
     BenchPoint point[] = {make_point(0, 4, 0, 10), make_point(1, 1, 0.08, 20),
-                          make_point(2, 2, 0.04, 21)};
-    const BenchWish any = {NAN, NAN, NAN};
-    static const char best[] =
-        "octree: for a deviation of at most 5%, 1% more than its least take w 1 "
-        "(edges of each node's own cell) and epsilon 0.5: 2.00 ms";
+                          make_point(2, 2, 0.04, 21), make_point(3, 0.5, 0.09, 30)};
+    const BenchWish wish = {20, 5, NAN};
     static const char *const wanted[] = {
-        "fastlsm: whatever is cheapest take w 1 (cells)",
+        "For a beam of 20 Hz (nothing is within 10% of it) and a deviation of at most 5% take "
+        "fastlsm w 1: 4.00 ms",
         "itself full resolution",
         "  shapebench run hand --engine fastlsm --w 1\n",
-        best,
+        "For a beam of 20 Hz and a deviation of at most 5% take octree w 1 and epsilon 0.5: 2.00 "
+        "ms a step of 295 nodes, a beam of 21 Hz that sags 10% of its length, the surface 4%",
         "  shapebench run hand --engine octree --w 1 --epsilon 0.5\n",
-        "A deviation of 4%: 2 ms (w 1, epsilon 0.5); 8%: 1 ms (w 1, epsilon 0)."};
-    char *text, command[256];
-    size_t size;
-    FILE *file = open_memstream(&text, &size);
-    bench_recommend(file, &plan, point, 3, &any);
-    fclose(file);
+        "A deviation of 4%: 2 ms (w 1, epsilon 0.5); 8%: 1 ms (w 1, epsilon 0).\n"};
+    char *text = say(&plan, point, 4, &wish), command[256];
     for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++)
         if (!strstr(text, wanted[i])) fail_msg("no \"%s\" in:\n%s", wanted[i], text);
     free(text);

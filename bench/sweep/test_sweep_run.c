@@ -231,7 +231,7 @@ TEST(a_recommended_command_gives_that_w)
                                          "regions: w = 6 x the node's edge, epsilon 0"};
     Result *result = malloc(sizeof *result);
     char command[2][256];
-    run("sweep timed.h5 --deviation 100", result);
+    run("sweep timed.h5 --stiffness 2 --deviation 100", result);
     static const char before[] = "\n  shapebench ";
     const char *at = result->out;
     for (int c = 0; c < 2; c++) {
@@ -253,10 +253,10 @@ TEST(a_recommended_command_gives_that_w)
 TEST(tables_in_every_format)
 {
     Result *result = malloc(sizeof *result);
-    run("sweep timed.h5 --deviation 100", result);
+    run("sweep timed.h5 --stiffness 2 --deviation 100", result);
     assert_int_equal(result->code, 0);
     assert_non_null(strstr(result->out, "3 of 3 points"));
-    assert_non_null(strstr(result->out, "octree: for a deviation of at most 100% take w 6 "));
+    assert_non_null(strstr(result->out, "and a deviation of at most 100% take octree w 6 "));
     run("sweep whole.h5 --format csv", result);
     int lines = 0, commas = 0;
     for (const char *c = result->out; *c; c++) {
@@ -266,7 +266,8 @@ TEST(tables_in_every_format)
     assert_int_equal(lines, 4);
     assert_int_equal(commas, 36 + 4 - 1); /* a column a member, five of the stages */
     run("sweep timed.h5 --format json --recommend", result);
-    assert_non_null(strstr(result->err, "fastlsm: whatever is cheapest take w 6 (cells)"));
+    assert_non_null(strstr(result->err, "How stiff is the body to be?"));
+    assert_non_null(strstr(result->err, "\n    fastlsm w 6: 1.00 ms a step of"));
     json_t *root = json_loads(result->out, 0, NULL);
     assert_int_equal(json_array_size(json_object_get(root, "points")), 3);
     const json_t *point = json_array_get(json_object_get(root, "points"), 0);

@@ -88,13 +88,15 @@ def claims(source):
 
 
 def recommendations(program, source):
-    """What the program itself recommends of a sweep; nothing where it is not there."""
+    """What the program itself has to choose from in a sweep, by stiffness; nothing where it is not there."""
     try:
         done = subprocess.run([program, "sweep", source.path, "--recommend"], capture_output=True, text=True)
     except OSError:
         return
-    for engine, wish, point in re.findall(r"^(\w+): (.*?) ?take (w .*? a step)\b", done.stdout, re.MULTILINE):
-        yield f"{named(engine)} of {source.plan['scene']}, {wish}: {point.replace(': ', ', ')}."
+    for choice, hz, points in re.findall(r"^  (\w+): --stiffness (\S+)\n((?: {4}.*\n)+)", done.stdout, re.MULTILINE):
+        of = re.findall(r"    (.*?): (.*? a step) .* that (sags \S+)", points)
+        yield (f"{source.plan['scene'].capitalize()}, {choice} (a beam of {hz} Hz): "
+               + "; ".join(f"{point} {sags}, {ms}" for point, ms, sags in of) + ".")
 
 
 def found(program, files, past):

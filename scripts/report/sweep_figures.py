@@ -1,4 +1,4 @@
-"""Sweeps of a report: heat maps over w and epsilon, the front of cost against deviation, the front's table.
+"""Sweeps of a report: heat maps over w and epsilon, what a stiffness costs, the front's table.
 How they are drawn is scripts/plot_sweep.py's matter."""
 import numpy as np
 
@@ -49,34 +49,36 @@ def heat_map(source, name, factor, file_name, title, unit, logarithmic, caption)
 def front(source):
     point = source.point
     figure, axes = canvas(4.8)
-    plot_sweep.front(axes, source.plan, point)
+    plot_sweep.front(axes, point)
     axes.set_title("")
     best = on_front(point)
-    words = "Points of the front, cheapest first: " + "; ".join(
-        f"{where(point, i)}: {number(point['total_ms'][i])} ms, {number(100 * point['path_rms'][i])}% off" for i in best)
-    return Figure(f"sweep-{source.plan['scene']}-front", f"{source.plan['scene']}: cost against deviation",
+    words = f"{len(best)} points are on the front" + "".join(
+        f"; {name}: {where(point, i)}, {number(point['frequency'][i])} Hz, {number(point['total_ms'][i])} ms"
+        for name, i in zip(("softest", "stiffest"), best[[0, -1]] if len(best) else ()))
+    return Figure(f"sweep-{source.plan['scene']}-front", f"{source.plan['scene']}: what a stiffness costs",
                   f"Each point is an engine, a {plot_sweep.unit_of_w(source.plan)}, and an epsilon; of one that is ringed "
-                  "no other is as near and cheaper beyond the spread of its repeats.",
-                  words + ".", ["engine", "w", "epsilon", "total_ms", "path_rms", "front"],
-                  [line[:3] + [float(point["total_ms"][i]), float(point["path_rms"][i]), int(point["front"][i])]
-                   for i, line in enumerate(listed(point, point["total_ms"]))]).draw(figure)
+                  "no other is as stiff within 10%, as near, and cheaper beyond the spread of its repeats.",
+                  words + ".", ["engine", "w", "epsilon", "frequency", "total_ms", "path_rms", "front"],
+                  [line + [float(point["total_ms"][i]), float(point["path_rms"][i]), int(point["front"][i])]
+                   for i, line in enumerate(listed(point, point["frequency"]))]).draw(figure)
 
 
 def on_front(point):
     best = np.flatnonzero(point["front"])
-    return best[np.argsort(point["total_ms"][best], kind="stable")]
+    return best[np.lexsort((point["total_ms"][best], point["frequency"][best]))]
 
 
 def front_table(source):
     point = source.point
-    table = Table(f"The front of {source.plan['scene']}: what is cheapest and nearest",
-                  ["point", "ms a step", "path off, %", "most, %", "goals off, cells", "frequency, Hz", "sag, %",
-                   "sums/region", "set-up ms", "MB"], f"Of {source.name}. No other valid point is as cheap and as near.")
+    table = Table(f"The front of {source.plan['scene']}: what to take for a stiffness",
+                  ["point", "frequency, Hz", "sag, %", "ms a step", "path off, %", "most, %", "goals off, cells",
+                   "sums/region", "set-up ms", "MB"],
+                  f"Of {source.name}. No other valid point is as stiff within 10%, as cheap and as near.")
     for i in on_front(point):
         table.add([where(point, i)] + [number(float(v)) for v in (
-            point["total_ms"][i], 100 * point["path_rms"][i], 100 * point["path_most"][i], point["goal_rms"][i],
-            point["frequency"][i], 100 * point["sag"][i], point["summation_nodes"][i], 1e3 * point["build_seconds"][i],
-            1e-6 * point["bytes"][i])])
+            point["frequency"][i], 100 * point["sag"][i], point["total_ms"][i], 100 * point["path_rms"][i],
+            100 * point["path_most"][i], point["goal_rms"][i], point["summation_nodes"][i],
+            1e3 * point["build_seconds"][i], 1e-6 * point["bytes"][i])])
     return table
 
 

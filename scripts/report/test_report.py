@@ -262,6 +262,14 @@ class Report(unittest.TestCase):
         self.assertIn("Checks 3 rows were measured; each was checked on the very scene timed: all are VALID.", words)
         self.assertNotIn("Claims", words)
 
+    def test_the_headline_names_no_point_of_a_sweep_without_its_stiffness(self):
+        source = sources.read(os.path.join(SOURCES, "results", "published", "sweep.h5"))
+        told = list(headline.recommendations(PROGRAM, source))
+        self.assertEqual(len(told), 3)
+        for choice, sentence in zip(("soft", "middle", "stiff"), told):
+            self.assertRegex(sentence, rf"^Hand, {choice} \(a beam of \S+ Hz\): fastlsm w \d+ sags \S+%, \S+ ms a step; "
+                                       r"octree w \d+ and epsilon \S+ sags \S+%, \S+ ms a step\.$")
+
     def test_the_headline_counts_the_verdicts(self):
         def claim(name, verdict, value, kind="method"):
             return {"kind": kind, "paper": "mine", "name": name, "verdict": verdict, "count": 1, "values": 1,
