@@ -20,6 +20,7 @@ from small_inputs import BOX, write_inputs
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), ".."))
 PROGRAM = ""
 MOST_WORDS = 900
+TUTORIAL = os.path.join("bench", "TUTORIAL.md")
 ELSEWHERE = {
     r"scripts/run view|scripts/view/film.py": "scripts/view/run_tests.py",
     r"scripts/run regress --revision": "scripts/check_regress.sh",
@@ -35,11 +36,10 @@ ELSEWHERE = {
 }
 # What a command of the program is given in the place of what the document says, and what it is not given.
 SMALL = {
-    "run": {"--frames": "1", "--steps": "1", "--quiet": None},
+    "run": {"--frames": "1", "--steps": "1"},
     "tables": {"--repeats": "2", "--block": "0.01", "--quiet": None},
     "claims": {"--paper": "fastlsm", "--claim": "cold-sweeps", "--quick": None, "--quiet": None},
-    "sweep": {"--engine": "fastlsm", "--frames": "1", "--repeats": "1", "--block": "0.01", "--quiet": None,
-              "--w": "1:2", "--epsilon": "0"},
+    "sweep": {"--frames": "1", "--repeats": "1", "--block": "0.01", "--quiet": None, "--w": "1:2", "--epsilon": "0"},
     "calibrate": {"--scene": "beam.cfg", "--w": "1", "--epsilon": "0", "--across": "none", "--aspect": "none",
                   "--step": "none", "--quiet": None},
     "report": {"--no-page": None, "--quiet": None},
@@ -134,9 +134,9 @@ def furnish(folder):
             file.write(f'#!/bin/sh\nexec /usr/bin/python3 "{os.path.realpath(__file__)}" --shim "$@"\n')
         os.chmod(path, 0o755)
     write_inputs(folder)
-    for name in ("MESH.obj", "my.obj", "hand_closed.obj"):
+    for name in ("MESH.obj", "my.obj", "hand_closed.obj", "LARGE.obj"):
         with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
-            file.write(BOX)
+            file.write(BOX.replace("0.", "") if name == "LARGE.obj" else BOX)
     write_ball(os.path.join(folder, "POINTS.xyz"))
     os.symlink(os.path.join(ROOT, "results", "published"), os.path.join(folder, "results", "published"))
     for published, names in {"fastlsm": ("fastlsm", "monday", "tuesday", "base"), "claims": ("claims",),
@@ -189,21 +189,46 @@ class Documents(unittest.TestCase):
                         self.assertIn(anchor, anchors(text_of(os.path.relpath(file, ROOT))))
 
     def test_commands_run(self):
+        self.assertGreater(sum(self.follow(document) for document in documents() if document != TUTORIAL), 20)
+
+    def test_tutorial_on_a_mesh_of_ones_own(self):
+        particles = []
+
+        def after(line, said, folder):
+            if "--write-mesh" in line:  # a larger one in the place of the tutorial's: 3 m long
+                shutil.copy(os.path.join(folder, "LARGE.obj"), os.path.join(folder, "my.obj"))
+            if " calibrate " in line:
+                self.paste(said, os.path.join(folder, "my.cfg"))
+            particles.extend(re.findall(r"^my: fastlsm, .*: (\d+) particles", said, re.MULTILINE))
+
+        self.assertGreater(self.follow(TUTORIAL, after), 8)
+        self.assertEqual(len(particles), 4)
+        self.assertEqual(len(set(particles)), 1)  # also of what calibrate printed
+
+    def paste(self, said, scene):
+        """Puts the settings that calibrate prints into a scene's file, in the place of its own of their names."""
+        with open(scene, encoding="utf-8") as file:
+            text = file.read()
+        settings = re.findall(r"^    ((\w+) = .*;\n)", said, re.MULTILINE)
+        self.assertGreater(len(settings), 3)
+        for setting, name in settings:
+            text = re.sub(rf"^{name} = .*\n", "", text, flags=re.MULTILINE) + setting
+        with open(scene, "w", encoding="utf-8") as file:
+            file.write(text)
+
+    def follow(self, document, after=lambda line, said, folder: None):
+        """Runs a document's commands in order, and what follows each; returns how many there were."""
         vtk, ran = has_vtk(), 0
-        for document in documents():
-            lines = commands(text_of(document))
-            if not lines:
-                continue
-            with tempfile.TemporaryDirectory() as folder:
-                furnish(folder)
-                write_files(text_of(document), folder)
-                for line in lines:
-                    if any(re.match(pattern, line) for pattern in ELSEWHERE) or ("render.py" in line and not vtk):
-                        continue
-                    with self.subTest(document=document, command=line):
-                        self.run_line(line, folder)
-                        ran += 1
-        self.assertGreater(ran, 20)
+        with tempfile.TemporaryDirectory() as folder:
+            furnish(folder)
+            write_files(text_of(document), folder)
+            for line in commands(text_of(document)):
+                if any(re.match(pattern, line) for pattern in ELSEWHERE) or ("render.py" in line and not vtk):
+                    continue
+                with self.subTest(document=document, command=line):
+                    after(line, self.run_line(line, folder), folder)
+                    ran += 1
+        return ran
 
     def run_line(self, line, folder):
         for name in re.findall(r"(?:-o|--write-mesh) (\S+)", line):  # made by an earlier line, or furnished
@@ -216,6 +241,7 @@ class Documents(unittest.TestCase):
         done = subprocess.run(["bash", "-e", "-c", line], cwd=folder, env=environment, text=True, timeout=300,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL)
         self.assertEqual(done.returncode, 0, done.stdout[-2000:])
+        return done.stdout
 
 
 if __name__ == "__main__":

@@ -14,14 +14,6 @@ static const double near_enough = 0.1, alike = 0.1; /* of a modulus */
 /* Appends to a sentence. */
 #define SAY(text, ...) sm_append(text, BENCH_WORDS, __VA_ARGS__)
 
-static const BenchStiffnessFit *find_law(const BenchStiffnessFit *law, int laws, const char *engine,
-                                         const char *kind)
-{
-    for (int i = 0; i < laws; i++)
-        if (!strcmp(law[i].engine, engine) && !strcmp(law[i].kind, kind)) return &law[i];
-    return NULL;
-}
-
 /* Values of valid specimens that are narrow or wide, or both (2): what is picked of each. */
 static int gather(const BenchSpecimen *specimen, long count, int wide,
                   double (*pick)(const BenchSpecimen *s), double *value)
@@ -203,36 +195,13 @@ static bool better(const BenchSpecimen *a, const BenchSpecimen *b, const BenchYo
     return off_a < off_b;
 }
 
-/* The spacing at which the law has `ratio` times the modulus; NaN: no law, or no spacing that the
- * beam can have. With q = a^2 it is a root of d W q^2 / t^2 + c q. */
-static double find_spacing(const BenchSpecimen *s, const BenchStiffnessFit *law, double thickness,
-                           double ratio)
-{
-    if (!law || !(law->c[0] > 0) || !(law->d[0] >= 0)) return NAN;
-    double W = s->w * (s->w + 1.0), bend = law->d[0] * W / (thickness * thickness);
-    double q = s->spacing * s->spacing, wanted = ratio * q * (law->c[0] + bend * q);
-    double found = sqrt(2 * wanted / (law->c[0] + sqrt(law->c[0] * law->c[0] + 4 * bend * wanted)));
-    return found <= thickness && found >= thickness / BENCH_MOST_ACROSS ? found : NAN;
-}
-
-/* Moduli go with the inverse square of the time step. */
+/* The time step that hits the wish: moduli go with (a/h)^2. */
 static double find_step(const BenchSpecimen *s, const BenchYoung *wish)
 {
-    return s->h / sqrt(wish->young / young_of(s, wish));
+    return s->h * wish->cell / s->spacing * sqrt(young_of(s, wish) / wish->young);
 }
 
-static void say_remedy(const BenchSpecimen *s, const BenchStiffnessFit *law, const BenchYoung *wish,
-                       char *text)
-{
-    double spacing = find_spacing(s, law, wish->thickness, wish->young / young_of(s, wish));
-    SAY(text, " A time step of %.4g s in place of %.4g s would hit it", find_step(s, wish), s->h);
-    if (isfinite(spacing))
-        SAY(text, ", or about a spacing of %.3g m in place of %.3g m", spacing, s->spacing);
-    SAY(text, ".");
-}
-
-long bench_recommendation_young(const BenchSpecimen *specimen, long count,
-                                const BenchStiffnessFit *law, int laws, const BenchYoung *wish,
+long bench_recommendation_young(const BenchSpecimen *specimen, long count, const BenchYoung *wish,
                                 char sentence[BENCH_WORDS])
 {
     long best = -1;
@@ -241,7 +210,7 @@ long bench_recommendation_young(const BenchSpecimen *specimen, long count,
     for (long i = 0; i < count; i++) {
         const BenchSpecimen *s = &specimen[i];
         if (!s->valid || strcmp(s->set, "grid") != 0) continue;
-        low = fmin(low, s->young), high = fmax(high, s->young);
+        low = fmin(low, young_of(s, wish)), high = fmax(high, young_of(s, wish));
         if (best < 0 || better(s, &specimen[best], wish)) best = i;
     }
     if (best < 0) {
@@ -249,20 +218,18 @@ long bench_recommendation_young(const BenchSpecimen *specimen, long count,
         return best;
     }
     const BenchSpecimen *s = &specimen[best];
-    double unit = wish->density / wish->measured;
     bool hit = off(s, wish) <= log(1 + near_enough);
     if (!hit)
         SAY(sentence, "No w and epsilon is within %g%% of %.4g Pa (%.3g to %.3g Pa there are). ",
-            100 * near_enough, wish->young, low * unit, high * unit);
+            100 * near_enough, wish->young, low, high);
     SAY(sentence, "For %.4g Pa at %.4g kg/m^3 %s %s with w %d", wish->young, wish->density,
         hit ? "take" : "the nearest is", s->engine, s->w);
     if (bench_engine(s->engine)->sampled) SAY(sentence, " and epsilon %g", s->epsilon);
     SAY(sentence,
         ", spacing %.3g m and time step %.3g s: %.3g Pa, sag and frequencies %.2g%% apart, loss "
-        "factor "
-        "%.1g.",
-        s->spacing, s->h, young_of(s, wish), 100 * s->spread, fabs(s->loss[0]));
-    say_remedy(s, find_law(law, laws, s->engine, "two-term"), wish, sentence);
+        "factor %.1g. With cells of %.4g m a time step of %.4g s hits it.",
+        s->spacing, s->h, young_of(s, wish), 100 * s->spread, fabs(s->loss[0]), wish->cell,
+        find_step(s, wish));
     return best;
 }
 
@@ -270,14 +237,15 @@ void bench_recommendation_settings(const BenchSpecimen *s, const BenchYoung *wis
                                    char settings[BENCH_WORDS])
 {
     settings[0] = '\0';
-    SAY(settings, "engine = \"%s\"; ", s->engine);
+    SAY(settings, "    engine = \"%s\";\n", s->engine);
     if (bench_engine(s->engine)->sampled)
         SAY(settings,
-            "epsilon = %.6g; octree = { edges = %d.0; criteria = ( { kind = \"uniform\"; } ); }; ",
+            "    epsilon = %.6g;\n"
+            "    octree = { edges = %d.0; criteria = ( { kind = \"uniform\"; } ); };\n",
             s->epsilon, s->w);
     else
-        SAY(settings, "w = %d; ", s->w);
-    SAY(settings, "cell = %.6g; h = %.6g; ", s->spacing, find_step(s, wish));
-    if (damping > 0) SAY(settings, "damping = %.6g; ", damping);
-    SAY(settings, "density = %.6g;", wish->density);
+        SAY(settings, "    w = %d;\n", s->w);
+    SAY(settings, "    h = %.6g;\n", find_step(s, wish));
+    if (damping > 0) SAY(settings, "    damping = %.6g;\n", damping);
+    SAY(settings, "    density = %.6g;\n", wish->density);
 }

@@ -1,5 +1,5 @@
 /* recommendation.h - what a calibration says in words, and which w and epsilon have a given
- * modulus. */
+ * modulus in a scene. */
 #ifndef BENCH_RECOMMENDATION_H
 #define BENCH_RECOMMENDATION_H
 
@@ -13,25 +13,24 @@ void bench_recommendation_found(const BenchSpecimen *specimen, long count,
                                 const BenchStiffnessFit *law, int laws,
                                 char found[BENCH_FOUND][BENCH_WORDS]);
 
-/* What is wished, and what the specimens are of. */
+/* What is wished, for what cells, and what the specimens are of. */
 typedef struct {
     double young, density; /* Pa, kg a cubic unit */
     double measured;       /* the specimens' density */
-    double thickness;      /* of their beam */
+    double cell;           /* of the scene that is to have it */
 } BenchYoung;
 
 /* The specimen of the grid that comes nearest to the wished modulus, and a sentence about it: what
- * it has, and which time step, or spacing (of 1 to BENCH_MOST_ACROSS cells through the beam), would
- * hit it. Of those within 10% the one with the least spread is taken. -1, and a sentence why, where
- * no specimen is valid. */
-long bench_recommendation_young(const BenchSpecimen *specimen, long count,
-                                const BenchStiffnessFit *law, int laws, const BenchYoung *wish,
+ * it has, and which time step hits the wish in the scene's cells (a body as many of them thick as
+ * the specimen is as stiff at the same cell / h). Of those within 10% the one with the least spread
+ * is taken. -1, and a sentence why, where no specimen is valid. */
+long bench_recommendation_young(const BenchSpecimen *specimen, long count, const BenchYoung *wish,
                                 char sentence[BENCH_WORDS]);
 
-/* The settings of a scene (scene.h) whose material is that specimen's at the time step that hits
- * the wish, with the specimens' damping. Its density is a part of it: where none is given particles
- * of a lattice weigh 1 each, those at its surface more than their share of the material, and bodies
- * are up to a quarter stiffer. */
+/* The scene's settings, each on a line of its own, that make its material the specimen's at the
+ * time step that hits the wish, with the specimens' damping; its cells stay as they are. The
+ * density is a part of it: where none is given particles of a lattice weigh 1 each, those at its
+ * surface more than their share of the material, and bodies are up to a quarter stiffer. */
 void bench_recommendation_settings(const BenchSpecimen *specimen, const BenchYoung *wish,
                                    double damping, char settings[BENCH_WORDS]);
 

@@ -53,6 +53,7 @@ static int set_up(void **state)
     write_box("beam.obj", 0, 15 * CELL, 5 * CELL);
     write_box("rooted.obj", -8 * CELL, 15 * CELL, 5 * CELL);
     write_text("small.cfg", "mesh = \"box.obj\"; cell = 0.05; h = 0.001;\n");
+    write_text("other.cfg", "mesh = \"box.obj\"; particles = 500; h = 0.005; density = 700;\n");
     write_text("five.cfg", "mesh = \"beam.obj\"; cell = 0.03125; h = 0.001;\n");
     write_text("fine.cfg", "mesh = \"box.obj\"; cell = 0.001; h = 0.001;\n");
     write_text("noise.h5", "no HDF5\n");
@@ -144,10 +145,10 @@ TEST(tables_in_every_format)
     runs("calibrate whole.h5 --young 1e6");
     assert_non_null(strstr(result.out, "4 of 4 specimens"));
     assert_non_null(strstr(result.out, "An elastic beam behaves alike: in 4 valid"));
-    assert_non_null(strstr(result.out, "A time step of "));
+    assert_non_null(strstr(result.out, " a time step of "));
     runs("calibrate whole.h5 --format csv --young 1e6");
     assert_non_null(strstr(result.out, "young_meshless_4,wall\n"));
-    assert_non_null(strstr(result.err, "A time step of "));
+    assert_non_null(strstr(result.err, " a time step of "));
     int lines = 0, commas = 0;
     for (const char *c = result.out; *c; c++) {
         lines += *c == '\n';
@@ -217,13 +218,13 @@ TEST(the_settings_printed_have_the_modulus)
     double wanted = ref_beam_sag(&beam, REF_TIMOSHENKO) * density * gravity / young;
     for (int engine = 0; engine < 2; engine++) {
         static const char clamp[] =
-            "\nmesh = \"rooted.obj\"; gravity = [0.0, -2.0, 0.0];\n"
+            "mesh = \"rooted.obj\"; cell = 0.03125; gravity = [0.0, -2.0, 0.0];\n"
             "handles = ( { box_low = [0.0, 0.0, 0.0]; box_high = [0.3479, 1.0, 1.0]; } );\n";
         char text[2048], line[256];
         snprintf(line, sizeof line, WISH, engine ? "octree --epsilon 0.5" : "fastlsm",
                  TEST_FIGURES ? "five" : "small");
         runs(line);
-        const char *settings = strstr(result.out, "The scene's settings that hit it");
+        const char *settings = strstr(result.out, ".cfg these lines hit it");
         assert_non_null(settings);
         settings = strchr(settings, '\n') + 1;
         snprintf(text, sizeof text, "%s%s", settings, clamp);
@@ -238,6 +239,19 @@ TEST(the_settings_printed_have_the_modulus)
         double light = sag_of("light.cfg");
         assert_true(engine ? fabs(light / sag - 1) < 1e-6 : light < 0.9 * sag);
     }
+}
+
+/* What is printed for a scene keeps its particles, and takes its density. */
+TEST(the_settings_printed_are_the_scenes)
+{
+    runs("calibrate whole.h5 --young 1e9 --scene other.cfg");
+    const char *settings = strstr(result.out, "In the scene other.cfg these lines hit it");
+    assert_non_null(settings);
+    assert_non_null(strstr(settings, "\n    w = 2;\n    h = "));
+    assert_non_null(strstr(settings, "\n    density = 700;\n"));
+    assert_null(strstr(settings, "cell ="));
+    run("calibrate whole.h5 --young 1e9 --scene no.cfg", &result);
+    assert_int_equal(result.code, 3);
 }
 
 /* With all of the relative motion damped away at every step a beam swings by rounding alone. A
@@ -264,6 +278,7 @@ TEST(mistakes_are_one_line)
     static const Mistake cases[] = {
         {"calibrate --w 3:1", 2, "--w: 3:1 falls"},
         {"calibrate --density 800", 2, "--density is that of --young's body: give both"},
+        {"calibrate whole.h5 --scene small.cfg", 2, "--scene is that of --young where FILE.h5"},
         {"calibrate --w 1.5", 2, "--w: 1.5 is no whole number"},
         {"calibrate --w none", 2, "--w: 'none' is not a range"},
         {"calibrate --w 0:3", 2, "--w: 0 is not from 1 to 31"},

@@ -22,8 +22,9 @@ typedef struct {
     BENCH_MEASURE(name, "RANGE", place, words), BENCH_IN(Options, range[list])
 
 static const BenchSetting settings[] = {
-    {BENCH_MEASURE("scene", "NAME|FILE.cfg", 1,
-                   "A beam: its body's box, its cells and its time step are taken (default: beam)"),
+    {BENCH_OPTION("scene", "NAME|FILE.cfg", 1,
+                  "A beam, whose body's box, cells and time step are taken; with FILE.h5 the scene "
+                  "that --young is for, of any body (default: beam)"),
      BENCH_IN(Options, plan.file)},
     {BENCH_MEASURE("engine", "NAME", 1, "%s (default: both)"), BENCH_IN(Options, plan.engines),
      .choices_of = bench_engine_choices, .why_not = bench_engine_unplanned},
@@ -43,12 +44,13 @@ static const BenchSetting settings[] = {
     {BENCH_MEASURE("poisson", "NU", 2, "Poisson's ratio of the elastic body (default: 0.3)"),
      BENCH_IN(Options, plan.poisson), -0.5, 0.49},
     BENCH_CAMPAIGN_OPTIONS(Options, 3, "specimen", BENCH_STORES("specimen")),
-    {BENCH_OPTION("density", "RHO", 4, "kg a cubic unit, of the wish (default: 1000)"),
+    {BENCH_OPTION("density", "RHO", 4,
+                  "kg a cubic unit, of --young's body (default: the scene's, or 1000)"),
      BENCH_IN(Options, density), 1e-6, 1e9},
     {BENCH_OPTION(
          "young", "E", 4,
-         "Say which w and epsilon have this Young's modulus, in Pa, or what would, and print a "
-         "scene's settings that do"),
+         "Say which w and epsilon have this Young's modulus, in Pa, or what would, and print the "
+         "scene's settings that do, for the cells that it has"),
      BENCH_IN(Options, young), 1e-6, 1e18},
     {0},
 };
@@ -56,8 +58,10 @@ static const BenchSetting settings[] = {
 static void check(const struct argp_state *state, void *record)
 {
     const Options *options = record;
-    if (options->density > 0 && isnan(options->young))
-        bench_usage(state, "--density is that of --young's body: give both");
+    if (!isnan(options->young)) return;
+    if (options->density > 0) bench_usage(state, "--density is that of --young's body: give both");
+    if (options->its.common.words && strcmp(options->plan.file, "beam") != 0)
+        bench_usage(state, "--scene is that of --young where FILE.h5 is shown: give both");
 }
 
 static const char help[] =
@@ -91,30 +95,47 @@ static SmCode make_plan(void *record, BenchCampaign *calibration, SmError *error
     return code;
 }
 
-static void recommend(const Options *options, const BenchCampaign *calibration)
+/* For the scene's cells and, unless another is given, its density. */
+static SmCode make_wish(const Options *options, const BenchCalibrationPlan *plan, BenchYoung *wish,
+                        SmError *error)
+{
+    BenchScene *scene = sm_alloc(1, sizeof *scene);
+    BenchBody body = {0};
+    SmCode code = bench_scene_find(options->plan.file, scene, error);
+    if (!code) code = bench_body_of_scene(scene, NULL, &body, error);
+    double density = options->density > 0 ? options->density : scene->density;
+    if (!(density > 0)) density = STANDARD_DENSITY;
+    *wish = (BenchYoung){options->young, density, plan->density, body.voxels.cell};
+    bench_body_free(&body);
+    free(scene);
+    return code;
+}
+
+static SmCode recommend(const Options *options, const BenchCampaign *calibration, SmError *error)
 {
     char sentence[BENCH_WORDS], found[BENCH_WORDS];
     const BenchCalibrationPlan *plan = calibration->plan;
-    BenchConclusion conclusion = bench_calibration_conclude(calibration);
-    double density = options->density > 0 ? options->density : STANDARD_DENSITY;
-    BenchYoung wish = {options->young, density, plan->density, plan->thickness};
-    long best = bench_recommendation_young(calibration->point, calibration->count, conclusion.law,
-                                           conclusion.laws, &wish, sentence);
+    BenchYoung wish;
+    SmCode code = make_wish(options, plan, &wish, error);
+    if (code) return code;
+    long best = bench_recommendation_young(calibration->point, calibration->count, &wish, sentence);
     bool table = options->its.format == BENCH_AS_CSV || options->its.format == BENCH_AS_JSON;
     FILE *file = table ? stderr : stdout;
     fprintf(file, "%s%s\n", table ? "" : "\n", sentence);
-    if (best < 0) return;
+    if (best < 0) return SM_OK;
     bench_recommendation_settings(bench_campaign_at(calibration, best), &wish, plan->damping,
                                   found);
-    fprintf(file, "The scene's settings that hit it, of which density is one:\n    %s\n", found);
+    fprintf(file, "In the scene %s these lines hit it, in the place of its own of these names:\n%s",
+            options->plan.file, found);
+    return SM_OK;
 }
 
 static SmCode show(const void *record, BenchCampaign *calibration, SmError *error)
 {
     const Options *options = record;
     bench_campaign_print(stdout, options->its.format, calibration);
-    if (!isnan(options->young)) recommend(options, calibration);
-    return bench_campaign_verdict(calibration, error);
+    SmCode code = isnan(options->young) ? SM_OK : recommend(options, calibration, error);
+    return code ? code : bench_campaign_verdict(calibration, error);
 }
 
 static const Options defaults = {

@@ -43,6 +43,29 @@ static SmCode check_text(const char *text, size_t size, const char *file, const 
     return SM_OK;
 }
 
+/* Cuts off all behind the setting that is there twice, and returns its name: the first in the line
+ * up to whose '=' the text already fails so. libconfig does not say which it is. */
+static const char *find_twin(char *text, int line)
+{
+    char *at = text, *end;
+    while (--line > 0 && strchr(at, '\n')) at = strchr(at, '\n') + 1;
+    for (bool twice = false; !twice; at = end + 1) {
+        end = at + strcspn(at, "=:");
+        if (!*end) return "a setting";
+        char after = end[1];
+        end[1] = '\0';
+        config_t config;
+        config_init(&config);
+        twice = !config_read_string(&config, text) && strstr(config_error_text(&config), "dupl");
+        config_destroy(&config);
+        if (!twice) end[1] = after;
+    }
+    while (end > text && strchr("=: \t\r\n", end[-1])) end--;
+    *end = '\0';
+    while (end > text && !strchr(" \t\r\n;,{", end[-1])) end--;
+    return end;
+}
+
 SmCode bench_config_parse(const char *text, size_t size, const char *file, const char *kind,
                           config_t *config, SmError *error)
 {
@@ -53,11 +76,15 @@ SmCode bench_config_parse(const char *text, size_t size, const char *file, const
     config_init(config);
     if (!config_read_string(config, copy)) {
         const char *what = config_error_text(config);
+        int line = config_error_line(config);
         const char *remedy = strstr(what, "mismatched")
                                  ? "write all numbers of a [ ] with a decimal point, or use ( )"
                                  : "settings look like: name = value;";
-        code = sm_fail(error, SM_INPUT, "%s:%d: %s; %s", file, config_error_line(config), what,
-                       remedy);
+        if (strstr(what, "duplicate"))
+            code = sm_fail(error, SM_INPUT, "%s:%d: '%.40s' is there twice: remove one of them",
+                           file, line, find_twin(copy, line));
+        else
+            code = sm_fail(error, SM_INPUT, "%s:%d: %s; %s", file, line, what, remedy);
         config_destroy(config);
     }
     free(copy);

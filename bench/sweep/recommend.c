@@ -256,7 +256,8 @@ static void ask(FILE *file, const BenchCampaign *sweep, BenchWish wish)
     const BenchEngine *engine;
     double low, high;
     if (!find_range(sweep, &wish, &low, &high)) return;
-    fputs("How stiff is the body to be? Pick one by its option, or any other frequency in Hz:\n", file);
+    fputs("How stiff is the body to be? Pick one by its option, or any other frequency in Hz:\n",
+          file);
     for (int k = 0; k < 3 && (k == 0 || low < high); k++) {
         wish.stiffness = k == 0 ? low : k == 1 ? rounded(sqrt(low * high)) : high;
         fprintf(file, "  %s: --stiffness %g\n", names[k], wish.stiffness);
