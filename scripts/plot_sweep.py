@@ -7,8 +7,6 @@ usage; 3 not a sweep file, or nothing in it to draw, or a package is missing; 4 
 
 from plots import drawing, engines, parse, read, write
 
-import itertools
-
 import numpy  # after plots, which says what is missing
 
 
@@ -63,36 +61,10 @@ def heat_map(axes, plan, point, values, title, logarithmic):
     axes.set_title(title, fontsize=9)
 
 
-def name_some(axes, names, at, others):
-    """Names beside points: in the nearest place where no name, no legend and none of the `others` is."""
-    from matplotlib.text import Text
-
-    axes.figure.draw_without_rendering()  # places are known only then
-    dots = axes.transData.transform(others)
-    renderer = axes.figure.canvas.get_renderer()
-    taken = [axes.get_legend().get_window_extent(renderer)]
-    for name, place in zip(names, at):
-        for distance, angle in itertools.product(range(10, 130, 10), range(45, 405, 30)):
-            far = distance * numpy.exp(1j * numpy.radians(angle))
-            note = axes.annotate(name, place, xytext=(far.real, far.imag), textcoords="offset points", fontsize=9,
-                                 ha="left" if far.real >= 0 else "right", va="center",
-                                 bbox={"boxstyle": "square,pad=0.1", "facecolor": "white", "edgecolor": "none"},
-                                 arrowprops={"arrowstyle": "-", "linewidth": 0.4, "shrinkA": 0, "shrinkB": 2})
-            note.update_positions(renderer)
-            box = Text.get_window_extent(note, renderer).padded(4)  # without the line to the point
-            if (not box.count_contains(dots) and not box.count_overlaps(taken)
-                    and axes.bbox.count_contains(box.corners()) == 4):
-                break
-            note.remove()
-        else:
-            continue
-        taken.append(box)
-
-
 def front(axes, point):
     stiff, cost, off = point["frequency"], point["total_ms"], 100 * point["path_rms"]
     shown = numpy.isfinite(stiff) & numpy.isfinite(cost) & numpy.isfinite(off)
-    axes.set_title("what a stiffness costs; rings: nothing as stiff is cheaper and nearer", fontsize=9)
+    axes.set_title("what a stiffness costs; rings: the front; digits: w", fontsize=9)
     axes.set_xlabel("first frequency of the regular beam, Hz")
     axes.set_ylabel("milliseconds a step")
     if not shown.any():
@@ -104,15 +76,16 @@ def front(axes, point):
             dots = axes.scatter(stiff[some], cost[some], c=off[some], marker="o" if sampled else "s", s=18,
                                 cmap="plasma", vmin=0, vmax=max(off[shown].max(), 1e-6), label=engine)
     best = numpy.flatnonzero(shown & (point["front"] != 0))
-    best = best[numpy.lexsort((stiff[best], point["sampled"][best]))]
     axes.scatter(stiff[best], cost[best], marker="o", s=46, facecolors="none", edgecolors="0.3", linewidth=0.7)
+    named = {}  # of each engine and w the softest of the front
+    for i in best[numpy.argsort(stiff[best], kind="stable")]:
+        named.setdefault((point["engine"][i], point["w"][i]), i)
+    for (_, w), i in named.items():
+        axes.annotate(f"{w:g}", (stiff[i], cost[i]), (0, 5), textcoords="offset points", ha="center", fontsize=8)
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.legend()
     axes.figure.colorbar(dots, ax=axes, pad=0.02, label="path off, percent of the body's size")
-    some = best[:: max(1, len(best) // 5)]
-    name_some(axes, [f"w {point['w'][i]:g}" + (f", {point['epsilon'][i]:g}" if point["sampled"][i] else "")
-                     for i in some], numpy.c_[stiff, cost][some], numpy.c_[stiff, cost][shown])
 
 
 def main():

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-double bench_bending_wave(BenchRunner *runner, bool upright)
+double bench_bending_wave(BenchRunner *runner)
 {
     const BenchBody *body = runner->body;
     size_t count = (size_t)runner->particles;
@@ -17,7 +17,7 @@ double bench_bending_wave(BenchRunner *runner, bool upright)
         double up = at[1] - (body->low[1] + body->high[1]) / 2;
         memcpy(x[i], at, sizeof x[i]);
         x[i][1] += size * cos(phase);
-        if (!upright) x[i][0] += size * 2 * M_PI / length * sin(phase) * up;
+        x[i][0] += size * 2 * M_PI / length * sin(phase) * up;
     }
     runner->type->masses(runner->engine, mass);
     runner->type->set(runner->engine, SM_POSITION, (const double(*)[3])x);

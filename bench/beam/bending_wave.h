@@ -5,9 +5,8 @@
 #include "../play/runner.h"
 
 /* The share of the wave, along y on a beam along x, that the goal positions of one step take back:
- * sum m u (x - g) / sum m u^2 of displacements u; with cross-sections that stay upright, or
- * straight and at right angles to the bent beam. The engine, in double precision, is left in that
- * state. */
-double bench_bending_wave(BenchRunner *runner, bool upright);
+ * sum m u (x - g) / sum m u^2 of displacements u; cross-sections stay straight and at right angles
+ * to the bent beam. The engine, in double precision, is left in that state. */
+double bench_bending_wave(BenchRunner *runner);
 
 #endif

@@ -160,7 +160,7 @@ static SmCode find_stiffness(const BenchExperiment *of, const BenchScene *scene,
     BenchRunner runner;
     SmCode code = bench_runner_exact(scene, body, &runner, error);
     if (!code) {
-        *stiffness = bench_bending_wave(&runner, false);
+        *stiffness = bench_bending_wave(&runner);
         bench_curve_check(of->curve, &runner);
     }
     bench_runner_free(&runner);

@@ -1,24 +1,22 @@
-/* bending.h - how stiff an engine is at a region width and an epsilon: three figures of one beam.
+/* bending.h - how stiff an engine is at a region width and an epsilon: two figures of one beam.
  *
  * The beam is the scene `beam`'s, 0.8 m long and 0.1 m thick, in double precision and without
  * damping; an octree samples it regularly, a node in every finest cell, so that w is the same in
  * cells and in edges and only w and epsilon count. Shape matching is stiffer the shorter the step:
  * the figures are for the scene's, 1 ms. Times h, a frequency is the same at every step; divided by
- * g h^2, so is a sag; a relaxation has no time in it.
+ * g h^2, so is a sag.
  *
- * - relaxation: of a small transverse wave, one period along the free beam, the share that the goal
- *   positions of one step take back: sum m p (x - g) / sum m p^2. Its rate a step.
  * - sag: how far the tip of the beam clamped at one end hangs down under 9.81 m/s^2, of its length,
  *   in the limit of small sags, also where a soft beam would hang straight down: one of a
  *   thousandth, in proportion.
  * - frequency: the first natural one of the clamped beam, Hz. How it and the sag are found:
  *   beam/clamped_beam.h.
  *
- * Nothing counts unchecked: the wave's goals, and the bent beam at rest with its next step, are
- * held to double-precision brute force (bench_check_runner()), and sag and frequency to each other:
- * whatever the stiffness, sag (2 pi f)^2 / g of a clamped beam is 1.236 where it only shears
- * and 1.545 where it only bends (Euler and Bernoulli: 1.8751^4 / 8), between which all of
- * Timoshenko's beams lie. BENCH_BENDING_LEAST and _MOST leave a tenth for what is no slender beam.
+ * Nothing counts unchecked: the bent beam at rest, with its next step, is held to double-precision
+ * brute force (bench_check_runner()), and sag and frequency to each other: whatever the stiffness,
+ * sag (2 pi f)^2 / g of a clamped beam is 1.236 where it only shears and 1.545 where it only bends
+ * (Euler and Bernoulli: 1.8751^4 / 8), between which all of Timoshenko's beams lie.
+ * BENCH_BENDING_LEAST and _MOST leave a tenth for what is no slender beam.
  */
 #ifndef BENCH_BENDING_H
 #define BENCH_BENDING_H
@@ -26,9 +24,9 @@
 #include "../../lib/engine/engine.h"
 
 typedef struct {
-    double relaxation, sag, frequency; /* NaN: `why` */
-    bool invalid;                      /* the check failed: none of the three is there */
-    char why[120];                     /* empty where all could be had */
+    double sag, frequency; /* NaN: `why` */
+    bool invalid;          /* the check failed: neither is there */
+    char why[120];         /* empty where both could be had */
 } BenchBending;
 
 #define BENCH_BENDING_LEAST 1.11

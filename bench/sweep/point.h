@@ -27,7 +27,7 @@ typedef struct {
 
     double goal_rms, goal_most; /* gap.h */
     char goal_why[BENCH_WHY];
-    double relaxation, sag, frequency; /* bending.h */
+    double sag, frequency; /* bending.h */
     char beam_why[BENCH_WHY];
     int full_w;
     double path_rms, path_most; /* gap.h */

@@ -305,7 +305,6 @@ static void measure_beam(BenchPoint *point)
     BenchBending beam;
     bench_bending_measure(exact_type(point->engine), point->w, point->epsilon, &beam);
     if (beam.invalid) invalidate(point, "beam", beam.why);
-    point->relaxation = beam.relaxation;
     point->sag = beam.sag;
     point->frequency = beam.frequency;
     snprintf(point->beam_why, sizeof point->beam_why, "%s", beam.why);
@@ -440,13 +439,14 @@ static void print_head(FILE *file, BenchFormat format, const BenchCampaign *swee
 static void print_tail(FILE *file, BenchFormat format, const BenchCampaign *sweep)
 {
     if (format != BENCH_AS_TEXT) return;
-    fputs("\nstages %: fast sum/shape matching/polar/damping/other. Stiffness is a regular beam's, "
-          "0.8 m x 0.1 m: relaxation of a bending wave a step, sag\nof its length in the limit of "
-          "small sags (of a soft one above 100%), first natural frequency. goals off: from epsilon "
-          "0, finest cells, rms.\npath off: the surface from a lattice's of equal width (w cells) "
-          "at full resolution, of the body's size, rms and most. "
-          "*: nothing within 10% of\nits Hz is both cheaper (ms/step) and nearer (path off).\n",
-          file);
+    fputs(
+        "\nstages %: fast sum/shape matching/polar/damping/other. Stiffness is a regular beam's, "
+        "0.8 m x 0.1 m: sag of its length in the limit of small sags\n(of a soft one above 100%), "
+        "first natural frequency. goals off: from epsilon 0, finest cells, rms.\npath off: the "
+        "surface from a lattice's of equal width (w cells) "
+        "at full resolution, of the body's size, rms and most. "
+        "*: nothing within 10% of\nits Hz is both cheaper (ms/step) and nearer (path off).\n",
+        file);
     write_hosts(file, sweep);
     write_reasons(file, sweep);
 }

@@ -121,7 +121,7 @@ TEST(a_point_has_its_figures)
             near_to(stages, p->total_ms);
             assert_true(p->build_seconds + p->sample[0] + p->sample[1] <= p->stamp.wall);
         }
-        assert_true(p->relaxation > 0 && p->relaxation < 1 && p->sag > 0 && p->frequency > 0);
+        assert_true(p->sag > 0 && p->frequency > 0);
         /* A beam under a constant load: omega^2 sag is 1.53 g / length (Euler and Bernoulli's
          * 12.36 and 1/8), somewhat less where shear counts. */
         double omega = 6.283185307179586 * p->frequency;
@@ -264,7 +264,7 @@ TEST(tables_in_every_format)
         commas += *c == ',' && lines == 0;
     }
     assert_int_equal(lines, 4);
-    assert_int_equal(commas, 36 + 4 - 1); /* a column a member, five of the stages */
+    assert_int_equal(commas, 35 + 4 - 1); /* a column a member, five of the stages */
     run("sweep timed.h5 --format json --recommend", result);
     assert_non_null(strstr(result->err, "How stiff is the body to be?"));
     assert_non_null(strstr(result->err, "\n    fastlsm w 6: 1.00 ms a step of"));

@@ -135,7 +135,7 @@ def read_sweep(source, file):
     source.plan = attributes(file["plan"])
     demand(source.plan, "scene width", wholes="points")
     source.point = read_columns(file["points"], "engine",
-                                "w epsilon valid total_ms build_seconds bytes summation_nodes goal_rms relaxation sag "
+                                "w epsilon valid total_ms build_seconds bytes summation_nodes goal_rms sag "
                                 "frequency path_rms path_most front")
     add_sampled(source.plan, source.point)
     if not len(source.point["w"]):
