@@ -86,21 +86,13 @@ static void say_laws(const BenchStiffnessFit *law, int laws, char *text)
 {
     for (int i = 0; i < laws; i++) {
         const BenchStiffnessFit *l = &law[i];
-        if (strcmp(l->kind, "two-term") != 0) continue;
         SAY(text, "%s%s c = %.3f (%.3f to %.3f) and d = %.3f (%.3f to %.3f), off by %.2g%%",
-            text[0] ? "; of the "
-                    : "With spacing a, time step h and thickness t it follows E = rho (a/h)^2 "
-                      "w(w+1) (c + d w(w+1) (a/t)^2), with of the ",
+            i ? "; of the "
+              : "With spacing a, time step h and thickness t it follows E = rho (a/h)^2 "
+                "w(w+1) (c + d w(w+1) (a/t)^2), with of the ",
             l->engine, l->c[0], l->c[1], l->c[2], l->d[0], l->d[1], l->d[2], 100 * l->scatter);
     }
-    for (int i = 0; i < laws; i++) {
-        const BenchStiffnessFit *l = &law[i];
-        if (!strcmp(l->kind, "two-term") || isnan(l->spacing[0]) || isnan(l->width[0])) continue;
-        SAY(text, "%s%s %s a^%.2f w^%.2f", strstr(text, "as powers") ? ", " : "; as powers, ",
-            l->engine, l->kind, l->spacing[0], l->width[0]);
-        if (isfinite(l->step[0])) SAY(text, " / h^%.3f", l->step[0]);
-    }
-    if (text[0]) SAY(text, ".");
+    if (laws) SAY(text, ".");
 }
 
 /* Largest and least of a modulus over what differs from `of` in one thing alone. */

@@ -28,20 +28,18 @@ def summary(source):
 
 
 def estimate(values):
-    return "–" if values[0] != values[0] else f"{number(float(values[0]))} ({number(float(values[1]))} to {number(float(values[2]))})"
+    return f"{number(float(values[0]))} ({number(float(values[1]))} to {number(float(values[2]))})"
 
 
 def law_table(source):
     table = Table("What Young's modulus follows from",
-                  ["engine", "law", "specimens", "c", "spacing^p", "w^q", "aspect^s", "1/h^r", "d", "off by, %"],
-                  f"Of {source.name}, with 95% confidence intervals. Powers, of regions narrower or wider than the beam is thick: "
-                  "E = c rho spacing^p w^q aspect^s / h^r. Two-term, of all: E = rho (spacing/h)^2 w (w+1) "
+                  ["engine", "specimens", "c", "d", "off by, %"],
+                  f"Of {source.name}, with 95% confidence intervals: E = rho (spacing/h)^2 w (w+1) "
                   "(c + d w (w+1) (spacing/thickness)^2).")
     law = source.law
-    for i in range(len(law["engine"])):
-        table.add([law["engine"][i], law["kind"][i], int(law["specimens"][i])]
-                  + [estimate(law[name][i]) for name in ("c", "spacing", "width", "aspect", "step", "d")]
-                  + [number(100 * float(law["scatter"][i]))])
+    for i in np.flatnonzero(law["kind"] == "two-term"):
+        table.add([law["engine"][i], int(law["specimens"][i]), estimate(law["c"][i]), estimate(law["d"][i]),
+                   number(100 * float(law["scatter"][i]))])
     return table
 
 
