@@ -34,15 +34,20 @@ def first_epsilon(specimen):
     return ~tree | (specimen["epsilon"] == specimen["epsilon"][tree].min()) if tree.any() else ~tree
 
 
+def direction(w, across, aspect):
+    """What d of the law is multiplied by: w (w + 1) (spacing / thickness)^2 / (1 + 3 w spacing / length)."""
+    return w * (w + 1) * across ** 2 / (1 + 3 * w * across / aspect)
+
+
 def two_terms(plan, law, engine, w):
     """The law of an engine on the scene's beam and step, or None."""
-    rows = numpy.flatnonzero((law["engine"] == engine) & (law["kind"] == "two-term"))
+    rows = numpy.flatnonzero(law["engine"] == engine)
     if not len(rows):
         return None
     c, d = law["c"][rows[0]][0], law["d"][rows[0]][0]
     spacing = plan["thickness"] / plan["across"]
-    steps = w * (w + 1)
-    return plan["density"] * (spacing / plan["h"]) ** 2 * steps * (c + d * steps / plan["across"] ** 2)
+    return (plan["density"] * (spacing / plan["h"]) ** 2 * w * (w + 1)
+            * (c + d * direction(w, 1 / plan["across"], plan["aspect"])))
 
 
 def modulus(axes, plan, specimen, law):
@@ -114,7 +119,7 @@ def collapse(axes, plan, specimen, law):
     """All specimens of the law: what is left of the modulus without rho (a / h)^2 w (w + 1)."""
     valid = (specimen["valid"] != 0) & first_epsilon(specimen)
     steps = specimen["w"] * (specimen["w"] + 1.0)
-    x = steps * (specimen["spacing"] / plan["thickness"]) ** 2
+    x = direction(specimen["w"], specimen["spacing"] / plan["thickness"], specimen["aspect"])
     y = specimen["young"] / (plan["density"] * (specimen["spacing"] / specimen["h"]) ** 2 * steps)
     marks = {"grid": "o", "spacing": "s", "aspect": "D", "step": "x"}
     for sampled, engine in engines(specimen):
@@ -123,7 +128,7 @@ def collapse(axes, plan, specimen, law):
             if some.any():
                 axes.scatter(x[some], y[some], s=18, marker=mark, color=COLOURS[sampled], alpha=0.8,
                              label=f"{engine}, " + ("the scene's beam" if kind == "grid" else f"another {kind}"))
-        rows = numpy.flatnonzero((law["engine"] == engine) & (law["kind"] == "two-term"))
+        rows = numpy.flatnonzero(law["engine"] == engine)
         if len(rows):
             at = numpy.geomspace(x[valid].min(), x[valid].max(), 60)
             axes.plot(at, law["c"][rows[0]][0] + law["d"][rows[0]][0] * at, color=COLOURS[sampled], linewidth=1)
@@ -133,7 +138,7 @@ def collapse(axes, plan, specimen, law):
     ticks = [tick for tick in (0.1, 0.2, 0.3, 0.5, 0.7, 1, 1.5, 2, 3, 5, 10) if low < tick < high]
     axes.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
     axes.minorticks_off()
-    axes.set_xlabel("w (w + 1) (spacing / thickness)²")
+    axes.set_xlabel("w (w + 1) (spacing / thickness)² / (1 + 3 w spacing / length)")
     axes.set_ylabel("Young's modulus / (density (spacing / step)² w (w + 1))")
     legend_below(axes, 2)
 
@@ -144,7 +149,7 @@ def main():
     plan, specimen, law = source.plan, source.specimen, source.law
     if not valid_grid(specimen).any():
         fail(f"{arguments.file}: no specimen of the scene's beam is valid", 3)
-    figure, axes = drawing().subplots(1, 2, figsize=(12, 5.5), layout="constrained")
+    figure, axes = drawing().subplots(1, 2, figsize=(15, 6), layout="constrained")
     modulus(axes[0], plan, specimen, law)
     agreement(axes[1], plan, specimen)
     axes[0].set_title("the elastic body that behaves alike; dotted: the two-term law", fontsize=9)

@@ -73,8 +73,10 @@ def front(axes, point):
     for sampled, engine in engines(point):
         some = shown & (point["engine"] == engine)
         if some.any():
-            dots = axes.scatter(stiff[some], cost[some], c=off[some], marker="o" if sampled else "s", s=18,
-                                cmap="plasma", vmin=0, vmax=max(off[shown].max(), 1e-6), label=engine)
+            mark = "o" if sampled else "s"
+            dots = axes.scatter(stiff[some], cost[some], c=off[some], marker=mark, s=18, cmap="plasma", vmin=0,
+                                vmax=max(off[shown].max(), 1e-6))
+            axes.scatter([], [], color="0.4", marker=mark, s=18, label=engine)
     best = numpy.flatnonzero(shown & (point["front"] != 0))
     axes.scatter(stiff[best], cost[best], marker="o", s=46, facecolors="none", edgecolors="0.3", linewidth=0.7)
     named = {}  # of each engine and w the softest of the front
@@ -84,6 +86,7 @@ def front(axes, point):
         axes.annotate(f"{w:g}", (stiff[i], cost[i]), (0, 5), textcoords="offset points", ha="center", fontsize=8)
     axes.set_xscale("log")
     axes.set_yscale("log")
+    axes.margins(y=0.1)
     axes.legend()
     axes.figure.colorbar(dots, ax=axes, pad=0.02, label="path off, percent of the body's size")
 

@@ -373,10 +373,7 @@ static void print_tail(FILE *file, BenchFormat format, const BenchCampaign *cali
     bool text = format == BENCH_AS_TEXT;
     if (text) write_legend(file, calibration->plan);
     if (text && laws.lines)
-        fputs("\nLaws. narrow, wide: E = c rho spacing^p w^q aspect^s / h^r; two-term: E = rho "
-              "(spacing/h)^2 "
-              "w(w+1) (c + d w(w+1) (spacing/thickness)^2); with 95% confidence intervals.\n\n",
-              file);
+        fputs("\nLaw: E = " BENCH_STIFFNESS_LAW ", with 95% confidence intervals.\n\n", file);
     if (!text) fputc('\n', file);
     if (laws.lines) bench_grid_whole(file, &laws, bench_format_form(format));
     bench_grid_free(&laws);

@@ -87,10 +87,8 @@ static void say_laws(const BenchStiffnessFit *law, int laws, char *text)
     for (int i = 0; i < laws; i++) {
         const BenchStiffnessFit *l = &law[i];
         SAY(text, "%s%s c = %.3f (%.3f to %.3f) and d = %.3f (%.3f to %.3f), off by %.2g%%",
-            i ? "; of the "
-              : "With spacing a, time step h and thickness t it follows E = rho (a/h)^2 "
-                "w(w+1) (c + d w(w+1) (a/t)^2), with of the ",
-            l->engine, l->c[0], l->c[1], l->c[2], l->d[0], l->d[1], l->d[2], 100 * l->scatter);
+            i ? "; " : "It follows E = " BENCH_STIFFNESS_LAW ": ", l->engine, l->c[0], l->c[1],
+            l->c[2], l->d[0], l->d[1], l->d[2], 100 * l->scatter);
     }
     if (laws) SAY(text, ".");
 }

@@ -26,12 +26,9 @@ ESTIMATE(d)
 
 const BenchField bench_stiffness_fit_fields[] = {
     {FIELD(TEXT, engine), MEANS(NULL, "fastlsm or octree"), .title = "engine", .left = true},
-    {FIELD(TEXT, kind), MEANS(NULL, "\"two-term\"")},
     {FIELD(INT, specimens), MEANS(NULL, "fitted, at the first epsilon"), .title = "specimens"},
     {FIELD(DOUBLE, scatter), MEANS("of E", "root mean square of E's deviation")},
-    {FIELD(DOUBLE, c),
-     MEANS(NULL, "value and 95% interval, as of d; E = rho (spacing/h)^2 w(w+1) (c + d w(w+1) "
-                 "(spacing/thickness)^2)"),
+    {FIELD(DOUBLE, c), MEANS(NULL, "value and 95% interval, as of d; E = " BENCH_STIFFNESS_LAW),
      BENCH_CELL("c", c_cell)},
     {FIELD(DOUBLE, d), MEANS(NULL, "the same"), BENCH_CELL("d", d_cell)},
     {.kind = BENCH_DOUBLE,
@@ -89,8 +86,9 @@ static bool fit_terms(const BenchSpecimen **s, int count, double thickness, doub
     for (size_t i = 0; i < n; i++) {
         double speed = s[i]->spacing / s[i]->h, across = s[i]->spacing / thickness;
         double x = density * speed * speed * smoothing(s[i]) / s[i]->young;
+        double along = s[i]->w * across / s[i]->aspect;
         gsl_matrix_set(X, i, 0, x);
-        gsl_matrix_set(X, i, 1, x * smoothing(s[i]) * across * across);
+        gsl_matrix_set(X, i, 1, x * smoothing(s[i]) * across * across / (1 + 3 * along));
         gsl_vector_set(y, i, 1);
     }
     double squares;
@@ -117,7 +115,6 @@ int bench_stiffness_fit(const BenchSpecimen *specimen, long count, double thickn
         const BenchSpecimen **chosen;
         const char *name = engine->type[0]->name;
         int number = choose(specimen, count, name, &chosen);
-        law[laws] = (BenchStiffnessFit){.kind = "two-term"};
         snprintf(law[laws].engine, sizeof law->engine, "%s", name);
         laws += fit_terms(chosen, number, thickness, density, &law[laws]);
         free(chosen);

@@ -25,10 +25,12 @@ static const BenchCalibrationPlan sample_plan = {.scene = "beam",
                                                  .other_aspect = {4, 16},
                                                  .step = {0.5, 2}};
 
-/* E = rho (a / h)^2 w (w + 1) (c + d w (w + 1) (a / t)^2); an epsilon doubles it. */
+/* E = rho (a / h)^2 w (w + 1) (c + d w (w + 1) (a / t)^2 / (1 + 3 w a / L)); an epsilon doubles it.
+ */
 static double two_terms(const BenchSpecimen *s, double c, double d)
 {
-    double speed = s->spacing / s->h, W = s->w * (s->w + 1.0), size = W * pow(s->spacing / 0.1, 2);
+    double speed = s->spacing / s->h, W = s->w * (s->w + 1.0), length = 0.1 * s->aspect;
+    double size = W * pow(s->spacing / 0.1, 2) / (1 + 3 * s->w * s->spacing / length);
     return 1000 * speed * speed * W * (c + d * size) * (s->epsilon > 0 ? 2 : 1);
 }
 

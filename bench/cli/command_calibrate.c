@@ -72,7 +72,7 @@ static const char help[] =
     "Timoshenko's. The grid is of all w and epsilon on the scene's beam; other spacings are "
     "measured for all w, other lengths and time steps for the first, middle and last, at the first "
     "epsilon. Every specimen is checked against brute force, and that it is at rest; one that "
-    "fails is INVALID. The laws are fitted to all of them. The octree samples the beam regularly. "
+    "fails is INVALID. The law is fitted to all of them. The octree samples the beam regularly. "
     "Meshless bodies and shells are not calibrated: they have no w and epsilon, and their modulus "
     "is given (run --young).\n"
     "A modulus goes with the density: --density serves --young alone. It holds for scenes that set "

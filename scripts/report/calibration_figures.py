@@ -35,10 +35,10 @@ def law_table(source):
     table = Table("What Young's modulus follows from",
                   ["engine", "specimens", "c", "d", "off by, %"],
                   f"Of {source.name}, with 95% confidence intervals: E = rho (spacing/h)^2 w (w+1) "
-                  "(c + d w (w+1) (spacing/thickness)^2).")
+                  "(c + d w (w+1) (spacing/thickness)^2 / (1 + 3 w spacing/length)).")
     law = source.law
-    for i in np.flatnonzero(law["kind"] == "two-term"):
-        table.add([law["engine"][i], int(law["specimens"][i]), estimate(law["c"][i]), estimate(law["d"][i]),
+    for i, engine in enumerate(law["engine"]):
+        table.add([engine, int(law["specimens"][i]), estimate(law["c"][i]), estimate(law["d"][i]),
                    number(100 * float(law["scatter"][i]))])
     return table
 
@@ -104,8 +104,8 @@ def collapse(source):
     plot_calibration.collapse(axes, plan, specimen, source.law)
     valid = specimen["valid"] != 0
     law = source.law
-    words = "; ".join(f"{law['engine'][i]}: c {number(float(law['c'][i][0]))}, d {number(float(law['d'][i][0]))}, off by "
-                      f"{number(100 * float(law['scatter'][i]))}% rms" for i in np.flatnonzero(law["kind"] == "two-term"))
+    words = "; ".join(f"{engine}: c {number(float(law['c'][i][0]))}, d {number(float(law['d'][i][0]))}, off by "
+                      f"{number(100 * float(law['scatter'][i]))}% rms" for i, engine in enumerate(law["engine"]))
     return Figure(name_of(source, "law"), f"{plan['scene']}: one law for all spacings, lengths and time steps",
                   "Young's modulus without its powers of spacing, step and w, against what direction adds; lines: the "
                   "two-term law.", f"Points lie on a line c + d x an engine: {words or 'no law could be fitted'}.",

@@ -163,7 +163,7 @@ def read_calibration(source, file):
                                    "w epsilon across aspect spacing h wide valid spread frequency:3 young young_euler:4 "
                                    "young_timoshenko:4 young_meshless:4")
     add_sampled(source.plan, source.specimen)
-    source.law = read_columns(file["laws"], "engine kind", "specimens scatter c:3 d:3")
+    source.law = read_columns(file["laws"], "engine", "specimens scatter c:3 d:3")
     source.found = [plain(file["laws"].attrs[f"found_{n}"]) for n in (1, 2, 3)]
     if not len(source.specimen["w"]):
         raise ValueError("not one specimen is finished")
