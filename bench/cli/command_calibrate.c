@@ -41,7 +41,7 @@ static const BenchSetting settings[] = {
     {LIST("step", 4, 2, "Time steps beside the scene's: times that, or none (default: 0.5,2)")},
     {BENCH_MEASURE("damping", "K", 2, "Share of region damping, 0 to 1 (default: 0)"),
      BENCH_IN(Options, plan.damping), 0, 1},
-    {BENCH_MEASURE("poisson", "NU", 2, "Poisson's ratio of the elastic body (default: 0.3)"),
+    {BENCH_MEASURE("poisson", "NU", 2, "The elastic body's Poisson ratio (default: 0.3)"),
      BENCH_IN(Options, plan.poisson), -0.5, 0.49},
     BENCH_CAMPAIGN_OPTIONS(Options, 3, "specimen", BENCH_STORES("specimen")),
     {BENCH_OPTION("density", "RHO", 4,
