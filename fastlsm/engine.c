@@ -32,8 +32,6 @@ struct SmEngine {
     double build_seconds;
 };
 
-static const double home[3]; /* momenta of a lattice count places from its own origin */
-
 /* The number in the lattice of a particle of any instance. */
 static long inner_of(const SmEngine *e, long number)
 {
@@ -384,7 +382,7 @@ static void move_held(SmEngine *e)
 
 static void begin_momentum(SmEngine *e)
 {
-    momentum_begin(e->momentum, 0, home, field_of(e, SM_POSITION), field_of(e, SM_VELOCITY));
+    momentum_begin(e->momentum, 0, NULL, field_of(e, SM_POSITION), field_of(e, SM_VELOCITY));
     const real *fall = e->lsm->gravity;
     bool rests = momentum_rests(e->momentum) && fall[0] == 0 && fall[1] == 0 && fall[2] == 0;
     e->lsm->rounding = rests ? e->rounding : 0;
@@ -399,7 +397,7 @@ static void keep_momentum(SmEngine *e)
     if (e->lsm->broken != e->divided_at)
         divide_momentum(e);
     else
-        momentum_keep(e->momentum, 0, home, x, v, e->lsm->gravity);
+        momentum_keep(e->momentum, 0, NULL, x, v, e->lsm->gravity);
     momentum_kept(e->momentum);
 }
 
@@ -472,7 +470,7 @@ static void engine_step(SmEngine *e, SmLaps *laps)
         sm_lap(laps, SM_OTHER);
     }
     lsm_step(lsm, laps);
-    momentum_settle(e->momentum, 0, home, field_of(e, SM_POSITION), field_of(e, SM_VELOCITY),
+    momentum_settle(e->momentum, 0, NULL, field_of(e, SM_POSITION), field_of(e, SM_VELOCITY),
                     lsm->gravity); /* before others change what obstacles have pushed */
     move_held(e);
     if (e->contacts) lsm_contacts_after(e->contacts, e->momentum);

@@ -8,6 +8,7 @@
 #include "../lib/system/team.h"
 #include "body_arrays.h"
 #include "dynamic_body.h"
+#include "ghosts.h"
 #include "positions.h"
 
 enum { BLOCKS_WORTH_A_THREAD = 128 };
@@ -33,6 +34,7 @@ static void fill_slots(const OctTree *tree, const OctRegions *regions, const dou
         oct_weights_region(&w, tree, regions, leaf, &rest);
         oct_slot_fill(oct, tree, &w, leaf, &rest);
     }
+    oct_ghosts_fill(oct, tree, &w);
     oct_weights_free(&w);
     for (long i = 0; i < oct->instances && oct->spread; i++)
         for (long block = 0; block < oct->blocks; block++) oct_block_inverse(oct, i, block);
@@ -117,6 +119,7 @@ Oct *oct_build(const OctTree *tree, const OctRegions *regions, const double *mas
     if (oct->instances > 1 && oct->workers > oct->instances) oct->workers = (int)oct->instances;
     oct->body = sm_alloc((size_t)oct->instances, sizeof *oct->body);
     build_lists(tree, regions, oct);
+    oct_ghosts_build(oct, tree, regions);
     share_blocks(oct, (tree->leaves + SM_LANES - 1) / SM_LANES);
     oct->rows = sm_alloc((size_t)oct->workers, sizeof *oct->rows);
     copy_tree(tree, oct);
@@ -137,12 +140,13 @@ void oct_free(Oct *oct)
     }
     for (long i = 0; i < oct->instances; i++) {
         OctState *b = &oct->body[i];
-        sm_free_all(b->x, b->v, b->g, b->last, b->stretch, b->plastic, b->inverse);
+        sm_free_all(b->origin, b->x, b->v, b->g, b->last, b->stretch, b->plastic, b->inverse);
     }
     oct_sum_lists_free(&oct->lists);
     oct_sum_lists_free(&oct->goal_lists);
     oct_levels_free(&oct->inner);
     oct_dynamic_body_free(oct->dynamic);
+    oct_ghosts_free(oct);
     sm_free_all(oct->collinear, oct->collinear_of, oct->child, oct->children, oct->row, oct->live,
                 oct->block, oct->share, oct->spread, oct->rows, oct->body, oct->obstacles.obstacle);
     free(oct);
@@ -164,6 +168,6 @@ long oct_bytes(const Oct *oct)
         structure += lanes * 6 * sizeof(real);
         state += lanes * 18 * sizeof(real);
     }
-    structure += oct_dynamic_body_bytes(oct->dynamic);
+    structure += oct_dynamic_body_bytes(oct->dynamic) + oct_ghosts_bytes(oct);
     return (long)(structure + (size_t)oct->workers * rows + (size_t)oct->instances * state);
 }

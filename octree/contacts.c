@@ -67,7 +67,8 @@ static void read_body(const OctContacts *k, const OctState *body, double (*x)[3]
             block = leaf / SM_LANES;
             last_load(body->last + block * 6 * SM_LANES, R);
         }
-        for (int d = 0; d < 3; d++) x[n][d] = body->origin[d] + (double)body->x[oct_index(leaf, d)];
+        for (int d = 0; d < 3; d++)
+            x[n][d] = oct_origin(k->oct, body, leaf)[d] + (double)body->x[oct_index(leaf, d)];
         for (int i = 0; i < 9; i++) frame[n][i] = (double)R[i][lane];
     }
 }
@@ -112,7 +113,7 @@ void oct_contacts_after(OctContacts *k, Momentum *momentum)
         OctState *body = &k->oct->body[c->node[i] / k->nodes];
         long leaf = k->leaf[c->node[i] % k->nodes];
         MomentumChange change;
-        oct_moved_from(body, leaf, &change);
+        oct_moved_from(k->oct, body, leaf, &change);
         for (int d = 0; d < 3; d++) {
             long at = oct_index(leaf, d);
             change.dx[d] = change.dv[d] = c->v[i][d];

@@ -3,7 +3,7 @@
 #include "damping.h"
 
 #include "../lib/simd/rigid_lanes.h"
-#include "sum.h"
+#include "ghosts.h"
 
 static void weigh(OctTask *task, long first, long last)
 {
@@ -139,7 +139,7 @@ static void slow(OctTask *task, long first, long last)
         load3(task->body->x + at, x);
         load3(task->body->v + at, v);
         pull(sum, oct->block[block].inverse_reach, (real)oct->params.damping, x, v);
-        oct_shift(task->body, shift);
+        oct_shift(oct, task->body, block, shift);
         integrate_position(&oct->obstacles, shift, oct_block(oct, task->body, block), x, v);
         store3(task->body->v + at, v);
         store3(task->body->x + at, x);
@@ -151,9 +151,11 @@ void oct_damp(OctTask *task)
 {
     oct_each_block(task, weigh);
     oct_climb(task, sums_up);
+    oct_each_ghost(task, oct_ghosts_products);
     oct_descend(task, &task->oct->lists, sums_down);
     oct_each_block(task, solve);
     oct_climb(task, velocities_up);
+    oct_each_ghost(task, oct_ghosts_velocities);
     oct_descend(task, oct_goal_lists(task->oct), velocities_down);
     oct_each_block(task, slow);
 }

@@ -7,6 +7,7 @@
 
 #include "body_arrays.h"
 #include "build.h"
+#include "ghosts.h"
 
 /* Half as many again as there are now, and some more for small bodies. */
 static long reserve_for(long count)
@@ -28,6 +29,7 @@ void oct_prepare(Oct *oct, const OctStructure *structure)
     assert(oct->instances == 1 && oct->params.form == OCT_HIERARCHICAL);
     if (oct->dynamic) return;
     const OctTree *tree = &structure->tree;
+    oct_ghosts_merge(oct);
     OctDynamicBody *c = oct->dynamic = sm_alloc(1, sizeof *c);
     oct_weights_build(tree, &structure->regions, structure->mass, oct->params.weighting,
                       &c->weights);

@@ -15,7 +15,7 @@
 #include "dynamic_body.h"
 #include "handle_nodes.h"
 #include "octree.h"
-#include "region/groups.h"
+#include "region/frames.h"
 
 struct SmEngine {
     OctEngineBase base; /* first: oct_engine_structure() */
@@ -86,9 +86,9 @@ static void get_node(const SmEngine *e, SmField field, long number, double value
     for (int d = 0; d < 3; d++) {
         long leaf = leaf_of(e, number);
         double here = (double)from[oct_index(leaf, d)];
-        value[d] = field == SM_VELOCITY
-                       ? (body->kick[d] + here) * cell / e->h
-                       : e->base.structure.origin[d] + cell * (body->origin[d] + here);
+        value[d] = field == SM_VELOCITY ? (body->kick[d] + here) * cell / e->h
+                                        : e->base.structure.origin[d] +
+                                              cell * (oct_origin(e->oct, body, leaf)[d] + here);
     }
 }
 
@@ -198,29 +198,42 @@ static void divide_momentum(SmEngine *e)
     Momentum *m = e->momentum;
     const OctStructure *s = &e->base.structure;
     momentum_room(m, e->oct->blocks);
+    if (e->oct->frame) momentum_frames(m);
     long slots = e->oct->blocks * SM_LANES, pieces;
     for (long slot = 0; slot < slots; slot++) m->label[slot] = -1;
-    pieces = oct_groups_find(&s->tree, &s->regions, m->label);
+    pieces = oct_frames_groups(&s->tree, &s->regions, m->label);
     for (long slot = 0; slot < slots; slot++) {
         bool there = m->label[slot] >= 0;
         m->mass[slot] = there ? (real)(s->mass[slot] / e->oct->mass_unit) : 0;
+        if (there && e->oct->frame) m->frame[slot] = e->oct->frame[slot];
     }
     momentum_divide(m, pieces);
     e->divided = true;
 }
 
-/* Goals are to be right to 5e-5 finest cells, and the coordinates of a body count from one origin:
- * some hundred roundings of one must be no more. */
-enum { MOST_WIDTH = 512 };
+/* Goals are to be right to 5e-5 finest cells: some hundred roundings of a coordinate within a
+ * region must be no more. */
+enum { MOST_REACH = 256 };
 
+static SmCode check_reach(const OctStructure *s, SmError *error)
+{
+    if (SM_REAL_BITS == 64 || s->regions.most_width <= 2 * MOST_REACH) return SM_OK;
+    return sm_fail(error, SM_INPUT,
+                   "octree: regions reach %g finest cells, and single precision has the digits for "
+                   "%d: take narrower regions, larger cells, fewer levels, or double precision",
+                   0.5 * s->regions.most_width, MOST_REACH);
+}
+
+/* The same of a whole body, which has one origin once it changes (ghosts.h). */
 static SmCode check_width(const OctStructure *s, SmError *error)
 {
-    int wide = oct_tree_extent(&s->tree) / 2;
-    if (SM_REAL_BITS == 64 || wide <= MOST_WIDTH) return SM_OK;
+    int wide = oct_tree_extent(&s->tree);
+    if (SM_REAL_BITS == 64 || wide <= 4 * MOST_REACH) return SM_OK;
     return sm_fail(error, SM_INPUT,
-                   "octree: the body is %d finest cells wide, and single precision has the digits "
-                   "for %d: take larger cells, fewer levels, or double precision",
-                   wide, MOST_WIDTH);
+                   "octree: the body is %d finest cells wide, and of a body that is cut or refined "
+                   "single precision has the digits for %d: take larger cells, fewer levels, or "
+                   "double precision",
+                   wide / 2, 2 * MOST_REACH);
 }
 
 static SmCode engine_may_change(SmEngine *e, SmError *error)
@@ -238,7 +251,7 @@ static SmCode engine_may_change(SmEngine *e, SmError *error)
         return sm_fail(error, SM_USAGE,
                        "octree: bodies of form 'adjoint' cannot be resampled; use 'hierarchical', "
                        "which is the same where regions are symmetric, as the engine's are");
-    return SM_OK;
+    return e->oct->dynamic ? SM_OK : check_width(&e->base.structure, error);
 }
 
 static SmCode engine_begin(SmEngine *e, SmError *error)
@@ -358,7 +371,7 @@ static SmCode engine_create(const SmVoxels *voxels, const SmEngineParams *params
     SmEngine *e = sm_alloc(1, sizeof *e);
     code = oct_structure_build(voxels, options, params->mass, &e->base.structure, error);
     if (!code) {
-        code = check_width(&e->base.structure, error);
+        code = check_reach(&e->base.structure, error);
         if (code) oct_structure_free(&e->base.structure);
     }
     if (!code) complete(e, options, params);
@@ -417,7 +430,7 @@ static void begin_momentum(SmEngine *e)
     e->oct->obstacles.notes = e->divided ? &e->momentum->notes : NULL;
     /* after a change it is divided into its pieces once the kick has been added (state.h) */
     for (OctState *b = e->oct->body; e->divided && b < e->oct->body + e->oct->instances; b++)
-        momentum_begin(e->momentum, b - e->oct->body, b->origin, b->x, b->v);
+        momentum_begin(e->momentum, b - e->oct->body, (const double(*)[3])b->origin, b->x, b->v);
     const real *fall = e->oct->gravity;
     bool rests = momentum_rests(e->momentum) && fall[0] == 0 && fall[1] == 0 && fall[2] == 0;
     e->oct->rounding = rests ? e->oct->at_rest : 0;
@@ -428,7 +441,8 @@ static void settle_momentum(SmEngine *e)
 {
     const Oct *oct = e->oct;
     for (const OctState *b = oct->body; e->divided && b < oct->body + oct->instances; b++)
-        momentum_settle(e->momentum, b - oct->body, b->origin, b->x, b->v, oct->gravity);
+        momentum_settle(e->momentum, b - oct->body, (const double(*)[3])b->origin, b->x, b->v,
+                        oct->gravity);
 }
 
 /* After the first step of a body that has changed its pieces are found again. */
@@ -440,7 +454,7 @@ static void keep_momentum(SmEngine *e)
     if (!keeps) momentum_forget(e->momentum);
     for (long i = 0; i < oct->instances && e->divided && keeps; i++) {
         OctState *b = &oct->body[i];
-        momentum_keep(e->momentum, i, b->origin, b->x, b->v, oct->gravity);
+        momentum_keep(e->momentum, i, (const double(*)[3])b->origin, b->x, b->v, oct->gravity);
     }
     if (!e->divided) divide_momentum(e);
     momentum_kept(e->momentum);
@@ -484,7 +498,7 @@ static void engine_push(SmEngine *e, long count, const long *particle, const dou
         double scale = e->h / (e->base.structure.cell * e->base.structure.mass[leaf]);
         OctState *body = body_of(e, particle[i]);
         MomentumChange change;
-        oct_moved_from(body, leaf, &change);
+        oct_moved_from(e->oct, body, leaf, &change);
         for (int d = 0; d < 3; d++) {
             change.dv[d] = impulse[i][d] * scale;
             body->v[oct_index(leaf, d)] += (real)change.dv[d];

@@ -58,7 +58,8 @@ void oct_handle_nodes_note(OctHandleNodes *nodes, const Oct *oct)
         struct OctHandleNode *node = &nodes->node[i];
         const OctState *body = &oct->body[node->body];
         for (int d = 0; d < 3; d++)
-            node->before[d] = body->origin[d] + (double)body->x[oct_index(node->leaf, d)];
+            node->before[d] =
+                oct_origin(oct, body, node->leaf)[d] + (double)body->x[oct_index(node->leaf, d)];
     }
 }
 
@@ -70,16 +71,17 @@ void oct_handle_nodes_move(const OctHandleNodes *nodes, Oct *oct, const OctStruc
         OctState *body = &oct->body[node->body];
         double rest[3], x0[3], to[3];
         MomentumChange change;
-        oct_moved_from(body, node->leaf, &change);
+        oct_moved_from(oct, body, node->leaf, &change);
         oct_structure_centre(structure, node->leaf, rest);
         sm_pose_apply((const double(*)[4])pose[node->body], rest, x0);
         sm_pose_apply((const double(*)[4])nodes->handles.handle[node->handle].pose, x0, to);
         for (int d = 0; d < 3; d++) {
             long index = oct_index(node->leaf, d);
             double x = (to[d] - structure->origin[d]) / structure->cell;
-            body->x[index] = (real)(x - body->origin[d]);
+            body->x[index] = (real)(x - oct_origin(oct, body, node->leaf)[d]);
             body->v[index] = (real)(x - node->before[d]);
-            change.dx[d] = body->origin[d] + (double)body->x[index] - change.x[d];
+            change.dx[d] =
+                oct_origin(oct, body, node->leaf)[d] + (double)body->x[index] - change.x[d];
             change.dv[d] = (double)body->v[index] - change.v[d];
         }
         momentum_pushed(momentum, node->body, node->leaf, &change, oct->gravity, 1);

@@ -1,6 +1,6 @@
 /* octree.c - one step of octree shape matching (octree section 4), top to bottom.
  *
- *     depth      every inner node sums the moments of its children
+ *     depth      every inner node sums the moments of its children (ghosts.h: of several frames)
  *     breadth    every region sums its summation nodes (octree eqs. 6, 7)
  *     match      c_r, A_r, polar decomposition, transform m_r T_r
  *     depth      every inner node sums the transforms of its children
@@ -12,13 +12,14 @@
 #include "octree.h"
 
 #include <assert.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "../lib/system/team.h"
 #include "collinear_regions.h"
 #include "damping.h"
+#include "ghosts.h"
 #include "plastic.h"
-#include "sum.h"
 
 /* m~ x of the simulation nodes; a node has no moments about itself. */
 static void weigh(OctTask *task, long first, long last)
@@ -292,7 +293,7 @@ static void move(OctTask *task, long first, long last)
         integrate_velocity(g, push, oct->rounding, lanes_set(1), v);
         if (!oct->damp_now) {
             vec shift[3];
-            oct_shift(body, shift);
+            oct_shift(oct, body, block, shift);
             integrate_position(&oct->obstacles, shift, oct_block(oct, body, block), x, v);
             store3(body->x + at, x);
         }
@@ -313,11 +314,13 @@ static void step_body(OctTask *task)
 {
     oct_each_block(task, weigh);
     oct_climb(task, moments_up);
+    oct_each_ghost(task, oct_ghosts_moments);
     next_phase(task);
     oct_descend(task, &task->oct->lists, moments_down);
     oct_each_block(task, match);
     next_phase(task);
     oct_climb(task, transforms_up);
+    oct_each_ghost(task, oct_ghosts_transforms);
     next_phase(task);
     oct_descend(task, oct_goal_lists(task->oct), transforms_down);
     oct_each_block(task, move);

@@ -1,6 +1,6 @@
 /* state.h - what the octree engine holds, in one precision.
  *
- * Inside, lengths are finest cells from movable origins and velocities are finest cells
+ * Inside, lengths are finest cells from movable origins (frames.h) and velocities are finest cells
  * per step. Simulation nodes are stored in slots, slot = leaf number; SM_LANES slots are a block,
  * and a block's coordinates are stored as x[3][lanes]. A slot without a leaf, beyond the last one
  * or of a number not in use, has no mass and matches the unit row, so that no lane is a special
@@ -45,6 +45,13 @@ typedef struct {
     vec axis[3];
 } OctCollinear;
 
+/* The row of a tree node once more, about the origin of another frame (ghosts.h). */
+typedef struct {
+    int node, from, to;    /* the frames of its leaves and of the lists that name the ghost */
+    real mass;             /* of its leaves */
+    real weight, first[3]; /* sum m~; sum m~ (x0 - centre) */
+} OctGhost;
+
 /* A row holds what a tree node sums: four quarters of three values each and a fourth, `pad`.
  *     moments      sum m~ x            ; of m~ x (x0 - centre)^T the columns x, y, z
  *     transforms   value at the centre ; linear part, columns x, y, z
@@ -63,13 +70,13 @@ typedef struct {
 
 /* One body. */
 typedef struct {
-    double origin[3]; /* finest cells: a leaf is at origin + x */
-    double kick[3];   /* finest cells per step: its velocity is kick + v; the next step adds it */
-    real *x, *v, *g;  /* [blocks][3][lanes] */
-    short *last;      /* [blocks][6][lanes] the regions' last rotations (rotate_lanes.h) */
-    real *stretch;    /* [blocks][9][lanes] eigenvectors for Jacobi's method, or NULL */
-    real *plastic;    /* [blocks][9][lanes] S_r, or NULL for an elastic body */
-    real *inverse;    /* [blocks][9][lanes] Aqq_r, or NULL */
+    double (*origin)[3]; /* [frames] finest cells: a leaf is at its frame's origin + x */
+    double kick[3];  /* finest cells per step: its velocity is kick + v; the next step adds it */
+    real *x, *v, *g; /* [blocks][3][lanes] */
+    short *last;     /* [blocks][6][lanes] the regions' last rotations (rotate_lanes.h) */
+    real *stretch;   /* [blocks][9][lanes] eigenvectors for Jacobi's method, or NULL */
+    real *plastic;   /* [blocks][9][lanes] S_r, or NULL for an elastic body */
+    real *inverse;   /* [blocks][9][lanes] Aqq_r, or NULL */
 } OctState;
 
 typedef struct {
@@ -94,6 +101,12 @@ typedef struct {
     real *spread;                   /* [blocks][6][lanes] rest moments of the regions, or NULL */
     long *share;                    /* [threads + 1] first block of each thread */
     struct OctDynamicBody *dynamic; /* what is kept to change the body (dynamic_body.h), or NULL */
+
+    long frames;
+    int *frame;             /* [slots] of every leaf; NULL: one for all */
+    long ghosts, ghost_row; /* the first one's row */
+    OctGhost *ghost;        /* [ghosts] */
+    double (*middle)[4];    /* [frames] for oct_recentre() */
 
     int workers;   /* bodies that are stepped at the same time */
     OctRows *rows; /* [workers] */
@@ -130,10 +143,19 @@ typedef struct {
     bool apart;   /* there are laps for every phase, those of the next one follow */
 } OctTask;
 
-/* Where a body's coordinates count from, for obstacles. */
-SM_INLINE void oct_shift(const OctState *body, vec shift[3])
+/* Where the coordinates of a leaf count from. */
+static inline double *oct_origin(const Oct *oct, const OctState *body, long leaf)
 {
-    for (int d = 0; d < 3; d++) shift[d] = lanes_set((real)body->origin[d]);
+    return body->origin[oct->frame ? oct->frame[leaf] : 0];
+}
+
+/* The same of a block's leaves, for obstacles. */
+SM_INLINE void oct_shift(const Oct *oct, const OctState *body, long block, vec shift[3])
+{
+    for (int d = 0; d < 3; d++) shift[d] = lanes_set((real)body->origin[0][d]);
+    for (int lane = 0; oct->frame && lane < SM_LANES; lane++)
+        for (int d = 0; d < 3; d++)
+            shift[d][lane] = (real)oct_origin(oct, body, block * SM_LANES + lane)[d];
 }
 
 /* Where number `field` of a simulation node's `fields` is in an array [blocks][fields][lanes]. */
@@ -155,10 +177,11 @@ static inline long oct_block(const Oct *oct, const OctState *body, long block)
 }
 
 /* What is about to be changed from outside. */
-static inline void oct_moved_from(const OctState *body, long leaf, MomentumChange *change)
+static inline void oct_moved_from(const Oct *oct, const OctState *body, long leaf,
+                                  MomentumChange *change)
 {
     for (int d = 0; d < 3; d++) {
-        change->x[d] = body->origin[d] + (double)body->x[oct_index(leaf, d)];
+        change->x[d] = oct_origin(oct, body, leaf)[d] + (double)body->x[oct_index(leaf, d)];
         change->v[d] = (double)body->v[oct_index(leaf, d)];
         change->dx[d] = change->dv[d] = 0;
     }

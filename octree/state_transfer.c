@@ -228,7 +228,7 @@ void oct_transfer_start(Oct *oct, const OctChange *change, const double *below, 
             momentum[d] -= t->donor[n].mass * t->donor[n].v[d];
         }
     for (int d = 0; d < 3; d++) {
-        oct->body->origin[d] -= place[d] / mass;
+        oct->body->origin[0][d] -= place[d] / mass;
         oct->body->kick[d] -= momentum[d] / mass;
     }
 }

@@ -52,3 +52,8 @@ void oct_descend(OctTask *task, const OctSumLists *lists, OctPass *pass)
     for (int level = 0; level <= lists->levels; level++)
         run_level(task, pass, lists->level_first[level], lists->level_first[level + 1]);
 }
+
+void oct_each_ghost(OctTask *task, OctPass *pass)
+{
+    run_level(task, pass, 0, task->oct->ghosts);
+}

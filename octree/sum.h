@@ -12,8 +12,9 @@
 #define oct_each_block SM_NAME(oct_each_block)
 #define oct_climb      SM_NAME(oct_climb)
 #define oct_descend    SM_NAME(oct_descend)
+#define oct_each_ghost SM_NAME(oct_each_ghost)
 
-/* What a pass does with the blocks, inner nodes or prefixes first .. last - 1. */
+/* What a pass does with the blocks, inner nodes, prefixes or ghosts first .. last - 1. */
 typedef void OctPass(OctTask *task, long first, long last);
 
 /* Each runs its pass over this thread's shares and waits for the others. Which thread does what
@@ -22,6 +23,7 @@ void oct_each_block(OctTask *task, OctPass *pass);
 void oct_climb(OctTask *task, OctPass *pass); /* inner nodes, level by level from the deepest */
 void oct_descend(OctTask *task, const OctSumLists *lists,
                  OctPass *pass); /* prefixes, from the top */
+void oct_each_ghost(OctTask *task, OctPass *pass);
 
 #if SM_LANES == 16
 #define ROW_PADS     3, 3, 3, 3, 7, 7, 7, 7, 11, 11, 11, 11, 15, 15, 15, 15

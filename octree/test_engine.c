@@ -359,21 +359,43 @@ TEST(refuses_what_it_does_not_do)
     sm_voxels_free(&voxels);
 }
 
-/* It has not the digits for a wide body's one origin. */
-TEST(single_precision_takes_no_wide_body)
+/* Single precision has not the digits for what is far apart and yet in one region. */
+TEST(regions_may_not_reach_further_than_the_digits)
+{
+    SmVoxels voxels;
+    SmEngine *engine;
+    SmError error;
+    sm_voxels_block(&voxels, 520, 1, 1, 0.5);
+    for (int precision = 0; precision < 2; precision++)
+        for (int wide = 0; wide < 2; wide++) {
+            OctOptions options = {.sampling = {.levels = 1}, .width.cells = wide ? 260 : 256};
+            SmEngineParams params = usual(&options);
+            SmCode code = engines[precision]->create(&voxels, &params, &engine, &error);
+            assert_int_equal(code, precision == 0 && wide ? SM_INPUT : SM_OK);
+            if (code) assert_non_null(strstr(error.text, "double precision"));
+            if (!code) engines[precision]->destroy(engine);
+        }
+    sm_voxels_free(&voxels);
+}
+
+/* Nor for a wide body's one origin, once it changes: said beforehand. */
+TEST(wide_bodies_do_not_change_in_single_precision)
 {
     for (int precision = 0; precision < 2; precision++)
         for (int wide = 0; wide < 2; wide++) {
             SmVoxels voxels;
             SmEngine *engine;
             SmError error;
+            OctStructure *structure;
             sm_voxels_block(&voxels, wide ? 516 : 512, 1, 1, 0.5);
             OctOptions options = {.sampling = {.levels = 1}};
             SmEngineParams params = usual(&options);
-            SmCode code = engines[precision]->create(&voxels, &params, &engine, &error);
-            assert_int_equal(code, precision == 0 && wide ? SM_INPUT : SM_OK);
-            if (code) assert_non_null(strstr(error.text, "double precision"));
-            if (!code) engines[precision]->destroy(engine);
+            assert_int_equal(engines[precision]->create(&voxels, &params, &engine, &error), SM_OK);
+            SmCode wanted = precision == 0 && wide ? SM_INPUT : SM_OK;
+            assert_int_equal(oct_engine_may_change(engine, &error), wanted);
+            if (wanted) assert_non_null(strstr(error.text, "double precision"));
+            assert_int_equal(oct_engine_begin(engine, &structure, &error), wanted);
+            engines[precision]->destroy(engine);
             sm_voxels_free(&voxels);
         }
 }

@@ -6,7 +6,9 @@
 #include "../lib/test_fields.h"
 #include "../lib/test_frame.h"
 #include "../reference/octree_goals.h"
+#include "ghosts.h"
 #include "octree.h"
+#include "region/frames.h"
 #include "region/test_regions.h"
 #include "tree/test_trees.h"
 
@@ -122,8 +124,8 @@ static inline void get(const Oct *oct, long instance, const real *field, bool pl
 {
     for (long i = 0; i < oct->leaves; i++)
         for (int d = 0; d < 3; d++)
-            values[i][d] =
-                (double)field[oct_index(i, d)] + (place ? oct->body[instance].origin[d] : 0);
+            values[i][d] = (double)field[oct_index(i, d)] +
+                           (place ? oct_origin(oct, &oct->body[instance], i)[d] : 0);
 }
 
 static inline void get_x(const Oct *oct, double (*values)[3])

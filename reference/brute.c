@@ -267,14 +267,14 @@ static void solve_known(const double I[9], const double L[3], double noise, doub
     for (int a = 0; a < 3; a++) omega[a] = over > 0 ? (solid ? sm_dot(C[a], L) : L[a]) / over : 0;
 }
 
-/* omega of a region by the rule of RefSums, from its I (destroyed) and L about c, which are `units`
+/* omega of region r by the rule of RefSums, from its I (destroyed) and L about c, which are `units`
  * times what they are over M_r. */
-static void solve_inertia(double I[9], const double L[3], const RefSums *sums, const double c[3],
-                          double units, double omega[3])
+static void solve_inertia(double I[9], const double L[3], const RefSums *sums, long r,
+                          const double c[3], double units, double omega[3])
 {
     if (sums) {
         double square = 0;
-        for (int a = 0; a < 3; a++) square += pow(c[a] - sums->origin[a], 2);
+        for (int a = 0; a < 3; a++) square += pow(c[a] - sums->origin[r][a], 2);
         solve_known(I, L, 8 * sums->epsilon * square * units, sums->thinnest, omega);
         return;
     }
@@ -327,7 +327,7 @@ void ref_rigid_motion(const RefRegions *regions, const double *weight, const dou
                 I[3 * a + b] += share * ((a == b ? square : 0) - d[a] * d[b]);
         }
     }
-    solve_inertia(I, L, sums, motion->c, 1 / (unit * unit), motion->omega);
+    solve_inertia(I, L, sums, r, motion->c, 1 / (unit * unit), motion->omega);
     for (int a = 0; a < 3; a++) motion->omega[a] /= unit;
 }
 

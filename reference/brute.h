@@ -90,7 +90,7 @@ void ref_goals(const RefRegions *regions, const double (*x0)[3], const double *m
  * 1 / tr(I^-1) > thinnest tr(S) + noise, and then J = (1 + n) I with n = noise tr(I^-1), else
  * J = tr(S) + noise; n and noise are left out where they are below a 64th of what they add to. */
 typedef struct {
-    double origin[3]; /* of the body, lengths as x */
+    const double (*origin)[3]; /* of the regions, lengths as x */
     double epsilon, thinnest;
 } RefSums;
 

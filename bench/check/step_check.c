@@ -10,6 +10,7 @@
 #include "../../lib/system/team.h"
 #include "../../lib/vector.h"
 #include "../../octree/change/structure.h"
+#include "../../octree/region/frames.h"
 #include "../../reference/brute_obstacle.h"
 #include "parted.h"
 
@@ -179,10 +180,42 @@ static double length(const double v[3])
     return sqrt(sm_dot(v, v));
 }
 
-double bench_check_rounding(const RefCondition *c, const RefSums *sums)
+/* The frame of every leaf that lives, in their order, in an engine made for the structure of this
+ * one; returns how many there are. */
+static long tree_frames(const SmEngine *engine, int *frame)
+{
+    const OctStructure *s = oct_engine_structure(engine);
+    int *of = sm_alloc((size_t)s->tree.leaves, sizeof *of);
+    long frames = oct_frames_find(&s->tree, &s->regions, of), live = 0;
+    for (long leaf = 0; leaf < s->tree.leaves; leaf++)
+        if (s->tree.node[leaf] >= 0) frame[live++] = of[leaf];
+    free(of);
+    return frames;
+}
+
+/* Where the sums of each region count from in an engine made for one body at x (cells): from the
+ * middle of its frame of reference, or of the body. */
+static void find_origins(const BenchCheck *check, const SmEngine *engine, const double (*x)[3],
+                         double (*origin)[3])
+{
+    long count = check->count, frames = 1;
+    int *frame = sm_alloc((size_t)count, sizeof *frame); /* zeroed */
+    if (check->hierarchical) frames = tree_frames(engine, frame);
+    double(*sum)[4] = sm_alloc((size_t)frames, sizeof *sum);
+    for (long i = 0; i < count; i++) {
+        for (int d = 0; d < 3; d++) sum[frame[i]][d] += x[i][d];
+        sum[frame[i]][3]++;
+    }
+    for (long i = 0; i < count; i++)
+        for (int d = 0; d < 3; d++) origin[i][d] = sum[frame[i]][d] / sum[frame[i]][3];
+    free(sum);
+    free(frame);
+}
+
+double bench_check_rounding(const RefCondition *c, const RefSums *sums, long r)
 {
     double epsilon = sums->epsilon, square = 0, inertia = c->inertia;
-    for (int d = 0; d < 3; d++) square += pow(c->centre[d] - sums->origin[d], 2);
+    for (int d = 0; d < 3; d++) square += pow(c->centre[d] - sums->origin[r][d], 2);
     double noise = 8 * epsilon * square, unsure = sums->thinnest * c->spread + noise;
     bool line = inertia <= 0.5 * unsure;
     if (!(c->spread > 0) || (!line && !(inertia >= 4 * unsure))) return INFINITY;
@@ -204,7 +237,7 @@ static void particle_rounding(const BenchCheck *check, const RefSums *sums, cons
     for (long r = 0; r < check->count; r++) {
         RefCondition found;
         ref_condition(regions, check->weight, (const double(*)[3])check->rest, x, r, 0, &found);
-        of[r] = bench_check_rounding(&found, sums);
+        of[r] = bench_check_rounding(&found, sums, r);
         if (regions->start[r + 1] - regions->start[r] == 1) of[r] = 0; /* it cannot turn */
     }
     for (long r = 0; r < check->count; r++) {
@@ -217,27 +250,29 @@ static void particle_rounding(const BenchCheck *check, const RefSums *sums, cons
 
 /* u of eq. 14 of one body, as an engine of this precision has it, and what rounding may make of it.
  */
-static void rigid_velocity(const BenchCheck *check, const char *precision, const double (*x)[3],
-                           const double (*v)[3], double (*u)[3], double *rounding)
+static void rigid_velocity(const BenchCheck *check, const SmEngine *engine, const char *precision,
+                           const double (*x)[3], const double (*v)[3], double (*u)[3],
+                           double *rounding)
 {
     double(*cells)[3] = sm_alloc((size_t)check->count, sizeof *cells);
+    double(*origin)[3] = sm_alloc((size_t)check->count, sizeof *origin);
     double epsilon = bench_check_epsilon(precision);
     const double(*at)[3] = (const double(*)[3])cells;
-    RefSums sums = {.epsilon = epsilon, .thinnest = epsilon > 1e-10 ? 1e-5 : 1e-10};
+    const RefSums sums = {(const double(*)[3])origin, epsilon, epsilon > 1e-10 ? 1e-5 : 1e-10};
     bench_check_cells(check, x, cells);
-    for (long i = 0; i < check->count; i++) /* sums count from the body's middle */
-        for (int d = 0; d < 3; d++) sums.origin[d] += at[i][d] / (double)check->count;
+    find_origins(check, engine, at, origin);
     if (check->hierarchical)
         ref_tree_rigid_velocity(&check->octree, at, v, &sums, u);
     else
         ref_rigid_velocity(&check->regions, check->mass, at, v, &sums, u);
     particle_rounding(check, &sums, at, rounding);
     free(cells);
+    free(origin);
 }
 
 /* Compares one body's velocities; keeps the worst particle in `found`. */
-static void compare(const BenchCheck *check, const BenchScene *scene, const char *precision,
-                    const Step *step, long first, BenchDeviation *found)
+static void compare(const BenchCheck *check, const BenchScene *scene, const SmEngine *engine,
+                    const char *precision, const Step *step, long first, BenchDeviation *found)
 {
     double k = scene->params.damping, h = scene->params.h;
     double epsilon = bench_check_epsilon(precision);
@@ -247,7 +282,7 @@ static void compare(const BenchCheck *check, const BenchScene *scene, const char
     double(*u)[3] = sm_alloc(count, sizeof *u), *rounding = sm_alloc(count, sizeof *rounding);
     bool *tied = sm_alloc(count, sizeof *tied);
     double largest = 0, away = 0;
-    rigid_velocity(check, precision, x, v, u, rounding);
+    rigid_velocity(check, engine, precision, x, v, u, rounding);
     bench_check_tied(check, precision, x, tied);
     for (size_t p = 0; p < count; p++) {
         largest = fmax(largest, length(v[p]));
@@ -302,7 +337,7 @@ void bench_check_damping(const BenchCheck *check, const BenchScene *scene, const
     bool held = is_held_at_rest(check, type->precision, params.h, &step);
     if (held) found->damping_tolerance = 16 * bench_check_epsilon(type->precision);
     for (long first = 0; first < step.all && !held; first += check->count)
-        compare(check, scene, type->precision, &step, first, found);
+        compare(check, scene, engine, type->precision, &step, first, found);
     found->motion_error = motion_error(&step, &params) / check->body->voxels.cell;
     step_free(&step);
 }

@@ -28,9 +28,9 @@ double bench_check_motion(const BenchRunner *runner);
 void bench_check_damping(const BenchCheck *check, const BenchScene *scene, const SmEngineType *type,
                          SmEngine *engine, BenchDeviation *found);
 
-/* The factor of k there: what rounding may make of the rigid velocity of a region, relative;
+/* The factor of k there: what rounding may make of the rigid velocity of region r, relative;
  * INFINITY: anything. */
-double bench_check_rounding(const RefCondition *condition, const RefSums *sums);
+double bench_check_rounding(const RefCondition *condition, const RefSums *sums, long r);
 
 /* Adds the check of obstacles to `found`, if the scene has any: the state of `engine` is stepped
  * once with them and once without, at no handles and contacts, and the one must be what

@@ -1,6 +1,8 @@
 /* The check of octrees that single precision is hard put to: right engines stand it in every state.
  */
 #include "../../lib/test_frame.h"
+#include "../../octree/change/structure.h"
+#include "../../octree/region/frames.h"
 #include "runner_check.h"
 #include "step_check.h"
 
@@ -77,6 +79,37 @@ static void trial_end(Trial *t)
     bench_check_free(&t->check);
     bench_runner_free(&t->runner);
     bench_body_free(&t->body);
+}
+
+/* The parts that no region joins, put as far apart as they drift in many thousand steps, each with
+ * a speed of its own. */
+TEST(parts_far_apart_are_right)
+{
+    for (int t = 0; t < 2; t++) {
+        Trial trial;
+        trial_begin("hand-sampled", 0, octrees[t], &trial);
+        SmEngine *engine = trial.runner.engine;
+        const OctStructure *s = oct_engine_structure(engine);
+        size_t count = (size_t)trial.check.count;
+        int *part = sm_alloc((size_t)s->tree.leaves, sizeof *part);
+        double(*x)[3] = sm_alloc(count, sizeof *x), (*v)[3] = sm_alloc(count, sizeof *v);
+        assert_true(oct_frames_groups(&s->tree, &s->regions, part) > 1);
+        bench_runner_disturb(&trial.runner, 1);
+        octrees[t]->get(engine, SM_POSITION, x);
+        octrees[t]->get(engine, SM_VELOCITY, v);
+        for (size_t i = 0; i < count; i++)
+            for (int d = 0; d < 3; d++) {
+                x[i][d] += 100.0 * part[i] * (d - 1);
+                v[i][d] += 5.0 * part[i] * (1 - d);
+            }
+        octrees[t]->set(engine, SM_POSITION, (const double(*)[3])x);
+        octrees[t]->set(engine, SM_VELOCITY, (const double(*)[3])v);
+        trial_steps(&trial, 5);
+        free(part);
+        free(x);
+        free(v);
+        trial_end(&trial);
+    }
 }
 
 /* Base cells of 4096 finest ones, whatever of them is filled. */

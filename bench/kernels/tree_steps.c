@@ -39,7 +39,7 @@ static void restore(const BenchTreeStep *step)
 
 static double get(const Oct *oct, const real *field, long leaf, int d, bool place)
 {
-    return (double)field[oct_index(leaf, d)] + (place ? oct->body->origin[d] : 0);
+    return (double)field[oct_index(leaf, d)] + (place ? oct_origin(oct, oct->body, leaf)[d] : 0);
 }
 
 /* Largest deviation of places from the twin's; infinite where they are not finite. */

@@ -59,7 +59,9 @@ void momentum_room(Momentum *m, long blocks)
     m->mass = room(m->mass, slots, sizeof *m->mass);
     m->label = room(m->label, slots, sizeof *m->label);
     m->run = room(m->run, (size_t)all_blocks(m) + 1, sizeof *m->run);
+    if (m->frame) m->frame = room(m->frame, slots, sizeof *m->frame);
     if (again) memset(m->mass, 0, slots * sizeof *m->mass);
+    if (m->frame) memset(m->frame, 0, slots * sizeof *m->frame);
     m->runs = 0;
     if (m->notes.noted) momentum_notes(m);
     momentum_forget(m);
@@ -79,13 +81,23 @@ void momentum_notes(Momentum *m)
     memset(m->notes.noted, 0, blocks * sizeof *m->notes.noted);
 }
 
-/* Lanes' pieces, by their places in m->piece less that of the body. */
-static void pieces_of(const Momentum *m, long block, long piece[SM_LANES])
+void momentum_frames(Momentum *m)
+{
+    if (!m->frame) m->frame = sm_alloc((size_t)slots_of(m) + 1, sizeof *m->frame);
+}
+
+/* A lane's piece, by its place in m->piece less that of the body, and frame. */
+typedef struct {
+    long piece, frame;
+} Lane;
+
+static void lanes_of(const Momentum *m, long block, Lane lane[SM_LANES])
 {
     for (int l = 0; l < SM_LANES; l++) {
         long slot = m->abreast ? block % m->blocks : block * SM_LANES + l, body = 0;
         if (m->abreast) body = block / m->blocks * SM_LANES + l;
-        piece[l] = body < m->bodies ? body * m->pieces + m->label[slot] : -1;
+        lane[l] = (Lane){body < m->bodies ? body * m->pieces + m->label[slot] : -1,
+                         m->frame ? m->frame[slot] : 0};
     }
 }
 
@@ -98,13 +110,14 @@ static void label_empty(Momentum *m)
         if (m->label[slot] >= 0) continue;
         long beside = slot < first ? first : slot - 1;
         m->label[slot] = m->label[beside];
+        if (m->frame) m->frame[slot] = m->frame[beside];
     }
 }
 
-static bool all_the_same(const long piece[SM_LANES])
+static bool all_the_same(const Lane lane[SM_LANES])
 {
     for (int l = 1; l < SM_LANES; l++)
-        if (piece[l] != piece[0]) return false;
+        if (lane[l].piece != lane[0].piece || lane[l].frame != lane[0].frame) return false;
     return true;
 }
 
@@ -115,14 +128,14 @@ static bool repeats(const int *of, long block)
     return !memcmp(here, here - SM_LANES, SM_LANES * sizeof *here);
 }
 
-/* Are its lanes of the pieces of those of the block before? Abreast labels are of all
+/* Are its lanes of the pieces and frames of those of the block before? Abreast labels are of all
  * lanes, and only the last group of bodies has fewer. */
 static bool like_before(const Momentum *m, long block)
 {
-    long here[SM_LANES], before[SM_LANES];
-    if (!m->abreast) return repeats(m->label, block);
-    pieces_of(m, block, here);
-    pieces_of(m, block - 1, before);
+    Lane here[SM_LANES], before[SM_LANES];
+    if (!m->abreast) return repeats(m->label, block) && (!m->frame || repeats(m->frame, block));
+    lanes_of(m, block, here);
+    lanes_of(m, block - 1, before);
     return !memcmp(here, before, sizeof here);
 }
 
@@ -142,7 +155,7 @@ static void add_masses(Momentum *m)
 
 void momentum_divide(Momentum *m, long pieces)
 {
-    long here[SM_LANES];
+    Lane here[SM_LANES];
     long most = (m->abreast ? 1 : VECTORS) * RUN_LENGTH;
     label_empty(m);
     m->pieces = pieces;
@@ -156,8 +169,8 @@ void momentum_divide(Momentum *m, long pieces)
     for (long block = 0; block < all_blocks(m); block++) {
         bool same = block > 0 && like_before(m, block);
         if (!same || block - m->run[m->runs - 1].first == most) {
-            pieces_of(m, block, here);
-            m->run[m->runs++] = (MomentumRun){block, all_the_same(here) ? here[0] : -1};
+            lanes_of(m, block, here);
+            m->run[m->runs++] = (MomentumRun){block, all_the_same(here) ? here[0].piece : -1};
         }
     }
     m->run[m->runs].first = all_blocks(m);
@@ -195,18 +208,25 @@ static void frame_values(const Momentum *m, const MomentumPiece *p, const double
     }
 }
 
+static const double *origin_of(const double (*origin)[3], const Lane *lane)
+{
+    static const double zero[3];
+    return origin ? origin[lane->frame] : zero;
+}
+
 /* Most runs are of one piece. */
-static void frame_of(const Momentum *m, const MomentumPiece *piece, const double origin[3],
+static void frame_of(const Momentum *m, const MomentumPiece *piece, const double (*origin)[3],
                      long run, Frame *frame)
 {
     vec *part[4] = {frame->about, frame->shift, frame->push, frame->turn};
     real value[4][3], lanes[4][3][SM_LANES] = {0};
-    long of[SM_LANES], same = m->run[run].piece;
-    pieces_of(m, m->run[run].first, of);
-    if (same >= 0) frame_values(m, &piece[same], origin, value);
+    Lane lane[SM_LANES];
+    long same = m->run[run].piece;
+    lanes_of(m, m->run[run].first, lane);
+    if (same >= 0) frame_values(m, &piece[same], origin_of(origin, lane), value);
     for (int l = 0; l < SM_LANES && same < 0; l++) {
-        if (of[l] < 0) continue;
-        frame_values(m, &piece[of[l]], origin, value);
+        if (lane[l].piece < 0) continue;
+        frame_values(m, &piece[lane[l].piece], origin_of(origin, &lane[l]), value);
         for (int i = 0; i < 12; i++) lanes[i / 3][i % 3][l] = value[i / 3][i % 3];
     }
     for (int i = 0; i < 12; i++)
@@ -241,7 +261,7 @@ SM_INLINE void keep_block(const Frame *f, vec mass, real *x, real *v, vec sum[SU
     }
 }
 
-static void keep_run(const Momentum *m, const MomentumPiece *piece, const double origin[3],
+static void keep_run(const Momentum *m, const MomentumPiece *piece, const double (*origin)[3],
                      long run, real *x, real *v, RunSum total)
 {
     Frame frame;
@@ -324,20 +344,21 @@ static void momenta_of(const MomentumPiece *p, Momenta *is)
 /* Adds up a run's sums by pieces. */
 static void add_run(const Momentum *m, long run, RunSum total, MomentumPiece *piece)
 {
-    long of[SM_LANES], same = m->run[run].piece;
+    Lane of[SM_LANES];
+    long same = m->run[run].piece;
     double all[SUMS] = {0};
-    pieces_of(m, m->run[run].first, of);
+    if (same < 0) lanes_of(m, m->run[run].first, of);
     for (int way = 0; way < MOMENTUM_WAYS; way++) {
-        long lane = of[way % SM_LANES];
-        if (same < 0 && lane < 0) continue;
-        double *sum = same >= 0 ? all : piece[lane].sum;
+        const Lane *lane = of + way % SM_LANES;
+        if (same < 0 && lane->piece < 0) continue;
+        double *sum = same >= 0 ? all : piece[lane->piece].sum;
         for (int i = 0; i < SUMS; i++) sum[i] += (double)total[way][i];
     }
     for (int i = 0; i < SUMS && same >= 0; i++) piece[same].sum[i] += all[i];
 }
 
 /* Sums of all pieces of a body, corrected where they are known; the first of them. */
-static MomentumPiece *measure(Momentum *m, long body, const double origin[3], real *x, real *v,
+static MomentumPiece *measure(Momentum *m, long body, const double (*origin)[3], real *x, real *v,
                               long *count)
 {
     *count = m->abreast ? m->bodies * m->pieces : m->pieces;
@@ -359,7 +380,7 @@ static MomentumPiece *measure(Momentum *m, long body, const double origin[3], re
     return piece;
 }
 
-void momentum_begin(Momentum *m, long body, const double origin[3], real *x, real *v)
+void momentum_begin(Momentum *m, long body, const double (*origin)[3], real *x, real *v)
 {
     long count;
     Momenta is;
@@ -453,15 +474,16 @@ static void changes_of(const real *mass, bool abreast, const real *before, const
 }
 
 /* Adds the changes of a block of a run, whose lanes are given, in the order of slots. */
-static void add_changes(const Momentum *m, long run, long block, const long lane[SM_LANES],
-                        MomentumPiece *piece, const double origin[3], const real *before,
+static void add_changes(const Momentum *m, long run, long block, const Lane lane[SM_LANES],
+                        MomentumPiece *piece, const double (*origin)[3], const real *before,
                         const real *x, const real *v)
 {
     Lanes from[3], change[SPREAD];
     long same = m->run[run].piece;
     for (int l = 0; l < SM_LANES; l++) {
-        long of = same >= 0 ? same : lane[l] < 0 ? 0 : lane[l];
-        for (int d = 0; d < 3; d++) from[d][l] = piece[of].about[d] - origin[d];
+        long of = same >= 0 ? same : lane[l].piece < 0 ? 0 : lane[l].piece;
+        const double *at = origin_of(origin, &lane[l]);
+        for (int d = 0; d < 3; d++) from[d][l] = piece[of].about[d] - at[d];
     }
     changes_of(m->mass + (m->abreast ? block % m->blocks : block * SM_LANES), m->abreast, before, x,
                v, from, change);
@@ -471,18 +493,19 @@ static void add_changes(const Momentum *m, long run, long block, const long lane
         piece[same].sum[i] = sum;
     }
     for (int l = 0; l < SM_LANES && same < 0; l++)
-        for (int i = 0; i < SPREAD && lane[l] >= 0; i++) piece[lane[l]].sum[i] += change[i][l];
+        for (int i = 0; i < SPREAD && lane[l].piece >= 0; i++)
+            piece[lane[l].piece].sum[i] += change[i][l];
 }
 
-void momentum_settle(Momentum *m, long body, const double origin[3], const real *x, const real *v,
-                     const real gravity[3])
+void momentum_settle(Momentum *m, long body, const double (*origin)[3], const real *x,
+                     const real *v, const real gravity[3])
 {
     if (!m->notes.noted) return;
     long first = m->abreast ? 0 : body * all_blocks(m), count = m->pieces;
     if (m->abreast) count *= m->bodies;
     MomentumPiece *piece = m->piece + (m->abreast ? 0 : body * count);
     bool *noted, any = false;
-    long lane[SM_LANES];
+    Lane lane[SM_LANES];
     for (long run = 0; run < m->runs; run++) {
         long end = m->run[run + 1].first, block = m->run[run].first, begin = block;
         while ((noted = memchr(m->notes.noted + first + block, true, (size_t)(end - block)))) {
@@ -491,7 +514,7 @@ void momentum_settle(Momentum *m, long body, const double origin[3], const real 
                 memset(p->sum, 0, sizeof p->sum);
             any = m->moving = true;
             *noted = false;
-            if (begin >= 0) pieces_of(m, begin, lane);
+            if (begin >= 0) lanes_of(m, begin, lane);
             begin = -1;
             add_changes(m, run, block, lane, piece, origin,
                         m->notes.before + (first + block) * 6 * SM_LANES, x + block * 3 * SM_LANES,
@@ -513,7 +536,7 @@ static double in_advance(double n)
     return leak + (1 + leak) * (n + 1) / (2 * n);
 }
 
-void momentum_keep(Momentum *m, long body, const double origin[3], real *x, real *v,
+void momentum_keep(Momentum *m, long body, const double (*origin)[3], real *x, real *v,
                    const real gravity[3])
 {
     long count;
@@ -564,7 +587,7 @@ void momentum_shift(Momentum *m, long body, const double by[3])
 
 long momentum_bytes(const Momentum *m)
 {
-    size_t slot = sizeof *m->mass + sizeof *m->label,
+    size_t slot = sizeof *m->mass + sizeof *m->label + (m->frame ? sizeof *m->frame : 0),
            notes = m->notes.noted ? noted_blocks(m) * (6 * SM_LANES * sizeof(real) + 1) : 0;
     return (long)(notes + (size_t)slots_of(m) * slot + (size_t)m->piece_room * sizeof *m->piece +
                   RUNS_AT_ONCE * sizeof(RunSum) + ((size_t)all_blocks(m) + 1) * sizeof *m->run);
@@ -573,5 +596,6 @@ long momentum_bytes(const Momentum *m)
 void momentum_free(Momentum *m)
 {
     if (!m) return;
-    sm_free_all(m->mass, m->label, m->piece, m->run, m->sum, m->notes.noted, m->notes.before, m);
+    sm_free_all(m->mass, m->label, m->frame, m->piece, m->run, m->sum, m->notes.noted,
+                m->notes.before, m);
 }

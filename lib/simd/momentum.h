@@ -24,6 +24,7 @@
 #define Momentum        SM_NAME(SmMomentum)
 #define momentum_build  SM_NAME(sm_momentum_build)
 #define momentum_room   SM_NAME(sm_momentum_room)
+#define momentum_frames SM_NAME(sm_momentum_frames)
 #define momentum_divide SM_NAME(sm_momentum_divide)
 #define momentum_forget SM_NAME(sm_momentum_forget)
 #define momentum_begin  SM_NAME(sm_momentum_begin)
@@ -52,7 +53,7 @@ typedef struct {
     long since;                            /* the `age` in which these were measured */
 } MomentumPiece;
 
-/* Blocks whose lanes are of the same pieces; of one piece where it is not -1. */
+/* Blocks whose lanes are of the same pieces and frames; of one piece where it is not -1. */
 typedef struct {
     long first, piece;
 } MomentumRun;
@@ -67,6 +68,7 @@ typedef struct {
     /* the caller's to fill in before momentum_divide(): */
     real *mass; /* [slots] 0 in empty ones; abreast, slots are particles */
     int *label; /* [slots] the piece, from 0; -1 in empty slots */
+    int *frame; /* [slots] which origin x counts from; NULL, as built: 0 (momentum_frames()) */
     /* its own: */
     long blocks; /* of SM_LANES slots, of one body; abreast: its particles */
     long bodies;
@@ -90,7 +92,10 @@ Momentum *momentum_build(long blocks, long bodies, bool abreast, int every, int 
 /* Bodies have as many blocks from now on. Allocates. */
 void momentum_room(Momentum *m, long blocks);
 
-/* Takes up masses and labels of `pieces` pieces. Forgets. Allocates only where there are
+/* Room for frames, all 0, if there is none. Allocates. */
+void momentum_frames(Momentum *m);
+
+/* Takes up masses, labels of `pieces` pieces, and frames. Forgets. Allocates only where there are
  * more pieces than ever before. O(slots). */
 void momentum_divide(Momentum *m, long pieces);
 
@@ -98,9 +103,10 @@ void momentum_divide(Momentum *m, long pieces);
 void momentum_forget(Momentum *m);
 
 /* Before a step of a body that is free: takes its momenta for what they should be, unless they are
- * known. Of one body, or all of them if they are abreast. A particle is at x + origin,
- * which counts by whole cells or stays. O(slots) when they are not known. */
-void momentum_begin(Momentum *m, long body, const double origin[3], real *x, real *v);
+ * known. Of one body, or all of them if they are abreast. A particle is at x + origin[its frame];
+ * origins count by whole cells, or are one that stays; NULL: 0. O(slots) when they are not known.
+ */
+void momentum_begin(Momentum *m, long body, const double (*origin)[3], real *x, real *v);
 
 /* Is all of it known to rest? */
 static inline bool momentum_rests(const Momentum *m)
@@ -117,7 +123,7 @@ static inline bool momentum_due(Momentum *m)
 /* Measures one body (all of them if they are abreast), and takes from its particles what was found
  * too much the last time. `gravity` in cells per step and step. The same bits for any number of
  * threads. O(slots): some 40 operations a block, and reads 28 bytes a slot. */
-void momentum_keep(Momentum *m, long body, const double origin[3], real *x, real *v,
+void momentum_keep(Momentum *m, long body, const double (*origin)[3], real *x, real *v,
                    const real gravity[3]);
 
 /* After all bodies were measured. */
@@ -151,8 +157,8 @@ SM_INLINE void momentum_note(const MomentumNotes *notes, long block, const vec x
 /* Counts what was noted of a body (of all if they are abreast) in the step that is not counted yet;
  * x and v are as obstacles have left them. O(blocks), and some 60 operations a slot of those that
  * were pushed. */
-void momentum_settle(Momentum *m, long body, const double origin[3], const real *x, const real *v,
-                     const real gravity[3]);
+void momentum_settle(Momentum *m, long body, const double (*origin)[3], const real *x,
+                     const real *v, const real gravity[3]);
 
 /* x of a body counts from a place farther on by `by`, which no `origin` tells. */
 void momentum_shift(Momentum *m, long body, const double by[3]);

@@ -27,12 +27,14 @@ const OctStructure *oct_engine_structure(const SmEngine *engine);
  * Where nodes weigh as much as their cells' volume, a body's mass changes with its sampling, and
  * momentum and centre of mass are left to what new nodes start with.
  *
- * All of a body's coordinates count from one origin. In single precision goals are so right up to
- * 512 finest cells across, and wider bodies are refused; groups that drift further apart than that
- * lose digits, and the check of goals says so.
+ * A body that changes counts all of its coordinates from one origin, no longer from one for every
+ * group or 64 cells of it (frames.h). In single precision goals are so right up to 512 finest cells
+ * across; groups that a cut leaves to drift further apart than that lose digits, and the check of
+ * goals says so.
  *
  * Errors: several bodies share the engine; goal positions are summed by OCT_ADJOINT; regions are
- * not symmetric by union (SM_USAGE). */
+ * not symmetric by union (SM_USAGE); in single precision a body more than 512 finest cells wide at
+ * rest (SM_INPUT). */
 SmCode oct_engine_begin(SmEngine *engine, OctStructure **structure, SmError *error);
 
 /* The same errors, before anything runs. O(leaves). */

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "../../lib/csr.h"
-#include "../region/groups.h"
+#include "../region/frames.h"
 #include "../region/region_change.h"
 #include "width.h"
 
@@ -360,7 +360,7 @@ size_t oct_structure_bytes(const OctStructure *structure)
 long oct_structure_parts(const OctStructure *structure)
 {
     int *group = sm_alloc((size_t)structure->tree.leaves, sizeof *group);
-    long parts = oct_groups_find(&structure->tree, &structure->regions, group);
+    long parts = oct_frames_groups(&structure->tree, &structure->regions, group);
     free(group);
     return parts;
 }

@@ -102,6 +102,7 @@ static void check_rebuilt(Body *body, int trial)
     rebuild(&body->structure, body->painted, &fresh);
     Oct *twin = oct_build(&fresh.tree, &fresh.regions, fresh.mass, &body->params);
     assert_int_equal(oct->alive, twin->leaves);
+    oct_ghosts_merge(twin);
     long *same = sm_alloc((size_t)oct->leaves, sizeof *same), found = 0;
     for (long leaf = 0; leaf < oct->leaves; leaf++) {
         same[leaf] = -1;

@@ -6,6 +6,7 @@
 #include "../../lib/test_fields.h"
 #include "../body_arrays.h"
 #include "../dynamic_body.h"
+#include "../ghosts.h"
 #include "../octree.h"
 #include "test_batches.h"
 
@@ -66,7 +67,7 @@ static inline void state_of(const Body *body, long leaf, double x[3], double v[3
 {
     const OctState *state = body->oct->body;
     for (int d = 0; d < 3; d++) {
-        x[d] = state->origin[d] + (double)state->x[oct_index(leaf, d)];
+        x[d] = oct_origin(body->oct, state, leaf)[d] + (double)state->x[oct_index(leaf, d)];
         v[d] = state->kick[d] + (double)state->v[oct_index(leaf, d)];
     }
 }
