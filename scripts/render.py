@@ -5,9 +5,9 @@ A trajectory has one camera, which sees all of its frames, so that pictures of t
 other. Its bodies stand on nothing but the obstacles that it holds; a mesh by itself stands on a ground of its own.
 
 Needs what `scripts/setup pictures` installs: Debian's python3-vtk9, python3-h5py, python3-matplotlib and,
-for a machine without a display, xvfb, xauth and libgl1-mesa-dri; videos need ffmpeg."""
+for a machine without a display, xvfb, xauth and libgl1-mesa-dri. `scripts/run view SCENE --video FILE` makes films."""
 
-from plots import draft, fail, opened, write
+from plots import fail, opened, write
 
 import argparse  # after plots, which watches for interrupts
 import dataclasses
@@ -15,13 +15,11 @@ import os
 import shutil
 import subprocess
 import sys
-import tempfile
 
 SURFACE, EDGE, GROUND = (0.55, 0.72, 0.90), (0.12, 0.18, 0.25), (0.97, 0.97, 0.98)  # colours
 STOP, SHADE = (0.90, 0.89, 0.87), (0.80, 0.80, 0.81)  # of obstacles, and of shadows on them
 OBSTACLES = ("obstacles", "particles/obstacles", "nodes/obstacles")  # before schema 4 only the latter
 PLANE, SPHERE, BOX, CAPSULE = range(4)  # kinds of obstacles
-VIDEOS = {".mp4": ("mp4", "libx264"), ".mkv": ("matroska", "libx264"), ".webm": ("webm", "libvpx-vp9")}
 TRAJECTORIES = (".vtkhdf", ".h5", ".hdf5", ".hdf")
 
 
@@ -32,7 +30,6 @@ class Sequence:
     low: "numpy.ndarray"
     high: "numpy.ndarray"
     obstacles: list  # rows of numbers, as in results/README.md
-    times: list  # of all frames
     still: bool  # a mesh that is not of a simulation
 
     @property
@@ -47,10 +44,7 @@ class Sequence:
 def parse():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("file", nargs="+", help="several files are shown side by side, with names")
-    written = parser.add_mutually_exclusive_group()
-    written.add_argument("-o", "--output", default="render.png", help="PNG to write (%(default)s)")
-    written.add_argument("--video", metavar="FILE", help=f"of all frames of a trajectory, instead: {', '.join(VIDEOS)} "
-                         "(needs ffmpeg); in the simulation's own time, at 1 to 60 pictures a second")
+    parser.add_argument("-o", "--output", default="render.png", help="PNG to write (%(default)s)")
     parser.add_argument("--overwrite", action="store_true", help="replace a file that is there")
     parser.add_argument("--view", choices=["front", "side", "back", "three-quarter"], default="three-quarter")
     parser.add_argument("--size", default="640x640", metavar="WxH", help="of each panel (%(default)s)")
@@ -65,12 +59,6 @@ def parse():
     options = parser.parse_args()
     if options.colour and options.cells == "boxes":
         parser.error("--colour is of the surface, and --cells boxes leaves it out")
-    if options.video and (len(options.file) > 1 or options.frame is not None):
-        parser.error("--video is of one file, and of all its frames")
-    if options.video and os.path.splitext(options.video)[1].lower() not in VIDEOS:
-        parser.error(f"--video {options.video}: writes {', '.join(VIDEOS)}")
-    if options.video and not shutil.which("ffmpeg"):
-        fail("--video needs ffmpeg: apt-get install ffmpeg", 3)
     options.frame = -1 if options.frame is None else options.frame
     return options
 
@@ -116,7 +104,7 @@ def read_sequence(path, mesh):
 
     if mesh:
         bounds = numpy.array(mesh.GetBounds())
-        return Sequence(bounds[::2], bounds[1::2], [], [0], True)
+        return Sequence(bounds[::2], bounds[1::2], [], True)
     with opened(path) as file:
         points, rows = file["VTKHDF/Points"], 1 << 20
         if not len(points):
@@ -131,10 +119,9 @@ def read_sequence(path, mesh):
         if obstacles.ndim != 2 or obstacles.shape[1] != 9 or not numpy.isfinite(obstacles).all() or \
                 not numpy.isin(obstacles[:, 0], (PLANE, SPHERE, BOX, CAPSULE)).all():
             raise ValueError("obstacles that are none")
-        times = file["VTKHDF/Steps/Values"][()].ravel() if "Steps" in file["VTKHDF"] else [0]
-        if not len(times):
+        if "Steps" in file["VTKHDF"] and not len(file["VTKHDF/Steps/Values"]):
             raise ValueError("no frames")
-    return Sequence(low.astype(float), high.astype(float), list(obstacles), list(times), False)
+    return Sequence(low.astype(float), high.astype(float), list(obstacles), False)
 
 
 def read_trajectory(path, frame, colours):
@@ -640,69 +627,6 @@ def draw(path, frame, shared, options, size):
     return numpy.hstack((image, bar(shared[2], size[1]))) if shared[2] else image
 
 
-def encoder(file, form, size, rate, log):
-    """ffmpeg, which takes pictures of this size and makes them the file."""
-    muxer, codec = VIDEOS[form]
-    command = ["ffmpeg", "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24",
-               "-s", f"{size[0]}x{size[1]}", "-framerate", f"{rate:.9g}", "-i", "pipe:0",
-               "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=0xF7F7FA", "-c:v", codec, "-pix_fmt", "yuv420p",
-               "-f", muxer, f"/dev/fd/{file.fileno()}"]
-    return subprocess.Popen(command, stdin=subprocess.PIPE, stdout=log, stderr=log, pass_fds=[file.fileno()],
-                            start_new_session=True)  # Ctrl-C is for us
-
-
-def pace(times):
-    """Of how many frames one is shown, and how many are shown in a second."""
-    import math
-
-    step = (times[-1] - times[0]) / max(1, len(times) - 1)
-    if not step > 0:
-        return 1, 25
-    every = max(1, math.ceil(1 / (60 * step) - 1e-6))
-    return every, min(60, max(1, 1 / (every * step)))
-
-
-def film(file, path, shared, options, size):
-    """The frames into the file that is open."""
-    times = shared[1].times
-    every, rate = pace(times)
-    frames, ffmpeg = range(0, len(times), every), None
-    with tempfile.TemporaryFile() as log:
-        try:
-            for frame in frames:
-                image = (255 * draw(path, frame, shared, options, size)).round().astype("uint8")
-                form = os.path.splitext(options.video)[1].lower()
-                ffmpeg = ffmpeg or encoder(file, form, image.shape[1::-1], rate, log)
-                ffmpeg.stdin.write(image.tobytes())
-                if sys.stderr.isatty():
-                    print(f"\rframe {frame} of {len(times) - 1} ", end="", file=sys.stderr, flush=True)
-            ffmpeg.communicate()
-        except BrokenPipeError:
-            ffmpeg.wait()
-        finally:
-            if ffmpeg and ffmpeg.poll() is None:
-                ffmpeg.kill()
-                ffmpeg.wait()
-        if ffmpeg.returncode:
-            log.seek(0)
-            said = log.read().decode("utf-8", "replace").strip().split("\n")[-1]
-            fail(f"{options.video}: ffmpeg failed: {said or f'exit code {ffmpeg.returncode}'}", 4)
-    return len(frames), rate
-
-
-def write_video(path, shared, options, size):
-    if shared[1].still:
-        fail(f"{path}: a mesh has no frames", 3)
-    try:
-        with draft.begun(options.video, options.overwrite) as file:
-            count, rate = film(file, path, shared, options, size)
-    except draft.Refused as error:
-        fail(error, 4)
-    except OSError as error:
-        fail(f"{options.video}: cannot be written: {error.strerror}", 4)
-    print(f"wrote {options.video}: {count} pictures, {rate:.4g} a second")
-
-
 def main():
     options = parse()
     try:
@@ -716,9 +640,6 @@ def main():
     except ImportError as error:
         fail(f"{error} (for {sys.executable}): apt-get install python3-vtk9 python3-h5py python3-matplotlib", 3)
     colours = options.colour and read_colours(options.file, options.colour)
-    if options.video:
-        write_video(options.file[0], share(options.file[0], colours), options, size)
-        return
     panels = [draw(path, options.frame, share(path, colours), options, size) for path in options.file]
     names = [os.path.splitext(os.path.basename(path))[0] for path in options.file]
     show = len(names) > 1 and not options.no_names

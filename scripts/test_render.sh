@@ -116,24 +116,6 @@ for colour in "" "--colour speed"; do
     [ "$status" -eq 3 ] && [ "$(wc -l <said)" -eq 1 ] && ! [ -e none.png ] || lost
 done
 
-# A video of all frames; without ffmpeg a line that names it.
-status=0
-PATH=/none "$render" floor.vtkhdf --video none.mp4 2>said || status=$?
-[ "$status" -eq 3 ] && grep -q 'needs ffmpeg: apt-get install ffmpeg' said && ! [ -e none.mp4 ] || lost
-if command -v ffmpeg ffprobe >/dev/null; then
-    "$render" floor.vtkhdf --colour speed --video film.mp4 --size 65x64 >said
-    grep -qx 'wrote film.mp4: 3 pictures, 3.333 a second' said
-    [ "$(ffprobe -v error -count_frames -show_entries stream=width,height,nb_read_frames -of csv=p=0 film.mp4)" = \
-        166,64,3 ]
-    status=0
-    mkdir fake
-    printf '#!/bin/sh\necho full >&2\nexit 1\n' >fake/ffmpeg
-    chmod +x fake/ffmpeg
-    PATH=$PWD/fake:$PATH "$render" floor.vtkhdf --video none.mp4 --size 64x64 2>said || status=$?
-    [ "$status" -eq 4 ] && grep -qx 'render.py: none.mp4: ffmpeg failed: full' said &&
-        ! compgen -G 'none.mp4*' >/dev/null || lost
-fi
-
 # Ctrl-C ends it with a line, and what lent it a display with it.
 echo 'import os, signal; os.kill(os.getpid(), signal.SIGINT)' >vtk.py
 status=0

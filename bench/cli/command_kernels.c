@@ -51,10 +51,8 @@ static const BenchSetting settings[] = {
     {BENCH_OPTION("layout", "L", 1, BENCH_LAYOUT_HELP), BENCH_IN(Options, layout),
      BENCH_CHOICES(bench_layouts)},
     {BENCH_OPTION("scaling", NULL, 1,
-                  "Also the cube of 10^7 particles, which takes about 4 GB, the set-up of one of "
-                  "256^3, and the "
-                  "octree's set-up and resampling of 10^6 nodes. Only by its name: setup-464, 10^8 "
-                  "particles, which take 10 GB"),
+                  "Also the cube of 10^7 particles, which takes about 4 GB, and the octree's "
+                  "resampling of 10^6 nodes"),
      BENCH_IN(Options, scaling)},
     {BENCH_REPEATS_OPTION(Options, repeats, 10000, " (default: 9)")},
     BENCH_FORMAT_OPTION(Options, format, 3),
