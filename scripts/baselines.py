@@ -11,8 +11,10 @@ the same nodes, masses and gravity, and the stiffness with which it sags as much
   ms/s            milliseconds for a simulated second, at the step that stands beside it
   deviation %     how far its nodes at rest are from those of the elastic reference (engine meshless) that sags as much,
                   rms, of the beam's length
+  same sag        within 2% of SHARE
+  times           its ms/s by FastLSM's
 What is comparable and what is not stands below the table and in FILE.h5 (results/README.md), which is for `shapebench
-tables --baselines` and for `shapebench report`.
+report`.
 Exit codes: 0 done; 2 usage; 3 Bullet (libbullet-dev, g++), the library or the program is not there; 4 FILE.h5 cannot be
 written."""
 import argparse
@@ -226,19 +228,26 @@ def cell_text(value):
     return value if isinstance(value, str) else "-" if value != value else f"{value:.4g}"
 
 
+def compared(rows, sag):
+    """The rows with what follows from them: is the sag that of all, and how many times FastLSM's is the time?"""
+    return [each | {"same sag": "yes" if abs(each["sag %"] / sag - 1) < 0.02 else "no",
+                    "times": each["ms/s"] / rows[0]["ms/s"]} for each in rows]
+
+
 def write(rows, form, file):
-    texts = [[cell_text(each[column]) for column in COLUMNS] for each in rows]
+    columns = list(rows[0])
+    texts = [[cell_text(value) for value in each.values()] for each in rows]
     if form == "json":
         json.dump(rows, file, indent=1)
         file.write("\n")
     elif form == "csv":
-        csv.writer(file).writerows([COLUMNS] + [list(each.values()) for each in rows])
+        csv.writer(file).writerows([columns] + [list(each.values()) for each in rows])
     else:
-        widths = [max(map(len, column)) for column in zip(COLUMNS, *texts)]
+        widths = [max(map(len, column)) for column in zip(columns, *texts)]
         lines = [[text.ljust(width) if i < 2 else text.rjust(width) for i, (text, width) in enumerate(zip(line, widths))]
-                 for line in [COLUMNS] + texts]
+                 for line in [columns] + texts]
         if form == "markdown":
-            lines.insert(1, ["---" if i < 2 else "---:" for i in range(len(COLUMNS))])
+            lines.insert(1, ["---" if i < 2 else "---:" for i in range(len(columns))])
         for line in lines:
             file.write(("| " + " | ".join(line) + " |" if form == "markdown" else "  ".join(line).rstrip()) + "\n")
 
@@ -260,7 +269,7 @@ def attributes(node, values):
 
 
 def store(rows, plan, machine, output, overwrite):
-    """The rows for tables and reports, whole or not at all; raises draft.Refused and OSError."""
+    """The rows for reports, whole or not at all; raises draft.Refused and OSError."""
     import h5py
     import stored
     room = io.BytesIO()
@@ -305,7 +314,7 @@ def main(arguments):
         if options.output:
             draft.check(options.output, options.overwrite)  # before what takes minutes
         rows, plan = measure(sb, options)
-        write(rows, options.format, sys.stdout)
+        write(compared(rows, plan["sag_percent"]), options.format, sys.stdout)
         if options.format in ("text", "markdown"):
             print(f"\nComparable: {COMPARABLE}.\n" + "\n" * (options.format == "markdown")
                   + f"Not comparable: {NOT_COMPARABLE}.", flush=True)

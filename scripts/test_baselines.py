@@ -13,6 +13,11 @@ class Baselines(unittest.TestCase):
         self.assertAlmostEqual(baselines.match(lambda young: 3e4 / young, 0.1, 1e3, 1e8), 3e5, delta=3e3)
         self.assertEqual(baselines.match(lambda young: 1.0, 0.1, 1e3, 1e8), 1e8)  # the stiffest is too soft
 
+    def test_methods_are_compared_with_the_first(self):
+        rows = [{"sag %": 10.1, "ms/s": 20.0}, {"sag %": 10.3, "ms/s": 30.0}]
+        self.assertEqual([(each["same sag"], each["times"]) for each in baselines.compared(rows, 10)],
+                         [("yes", 1), ("no", 1.5)])
+
     def test_elements_sag_as_theory_says(self):
         """Linear elements of four cells through are stiffer than a beam, and no softer."""
         beam, young, gravity = baselines.Beam(4, shapebench), 2e6, 1.0

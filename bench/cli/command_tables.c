@@ -20,7 +20,7 @@
 typedef struct {
     BenchCommon common;
     BenchOverride chosen;
-    const char *paper, *output, *baselines, *checked;
+    const char *paper, *output, *checked;
     BenchNames given;
     int repeats;
     double block;
@@ -61,11 +61,6 @@ static const BenchSetting settings[] = {
                   "Add a table of what the processor counted in a step: cycles, instructions, "
                   "misses; csv, json and FILE.h5 always have it where it can be read (see info)"),
      BENCH_IN(Options, counters)},
-    {BENCH_OPTION(
-         "baselines", "FILE.h5", 3,
-         "Add a table of what one would take instead, Bullet's soft bodies beside FastLSM on "
-         "one beam: what scripts/baselines.py -o measured"),
-     BENCH_IN(Options, baselines)},
     {BENCH_OUTPUT_OPTION(
          "FILE.h5", 3,
          "Also store every sample, counts, validity and provenance in HDF5 (default: nothing "
@@ -340,9 +335,6 @@ static SmCode perform(void *record, int argc, char **argv, SmError *error)
     choose_scenes(&chosen);
     choose_sets(&chosen);
     SmCode code = check_substitutes(&chosen, error);
-    BenchBaselines baselines = {0};
-    if (!code && options->baselines)
-        code = bench_baselines_load(options->baselines, &baselines, error);
     BenchRow *rows = sm_alloc((size_t)chosen.count, sizeof *rows);
     if (!code) code = bench_draft_reserve(options->output, options->overwrite, error);
     if (!code) code = plan_rows(&chosen, rows, error);
@@ -351,7 +343,6 @@ static SmCode perform(void *record, int argc, char **argv, SmError *error)
     bench_command_machine(&options->common, argc, argv, &machine);
     BenchTable table = {.format = options->format,
                         .explain = options->explain,
-                        .baselines = options->baselines ? &baselines : NULL,
                         .report = {.file = stdout,
                                    .rows = rows,
                                    .count = chosen.count,
@@ -362,7 +353,6 @@ static SmCode perform(void *record, int argc, char **argv, SmError *error)
         code = bench_store_rows(options->output, rows, chosen.count, &machine, error);
     if (!code) code = verdict(rows, chosen.count, error);
     bench_rows_free(rows, chosen.count);
-    bench_baselines_free(&baselines);
     free(chosen.scene);
     return code;
 }

@@ -72,7 +72,7 @@ static json_t *json_cell(const BenchQuantity *quantity, const BenchRow *row)
     return as ? as : value;
 }
 
-static void write_json(const BenchReport *report, const BenchBaselines *baselines)
+static void write_json(const BenchReport *report)
 {
     json_t *root = json_object(), *list = json_array();
     int quantities;
@@ -87,8 +87,6 @@ static void write_json(const BenchReport *report, const BenchBaselines *baseline
     }
     json_object_set_new(root, "rows", list);
     json_object_set_new(root, "environment", bench_json_machine(report->machine));
-    if (baselines)
-        json_object_set_new(root, "baselines", bench_json_baselines(baselines, report->machine));
     bench_json_write(report->file, root);
 }
 
@@ -111,23 +109,10 @@ void bench_table_rows(BenchTable *table, int measured)
         bench_report_rows(report, measured);
 }
 
-static void write_baselines(const BenchTable *table)
-{
-    const BenchReport *report = &table->report;
-    if (table->format == BENCH_AS_CSV) {
-        fputc('\n', report->file);
-        bench_baselines_csv(report->file, table->baselines);
-    } else {
-        bench_baselines_print(report->file, report->form, table->baselines, report->machine);
-    }
-}
-
 void bench_table_end(BenchTable *table)
 {
-    if (table->format == BENCH_AS_JSON) {
-        write_json(&table->report, table->baselines);
-        return;
-    }
-    if (table->format != BENCH_AS_CSV) bench_report_end(&table->report, table->explain);
-    if (table->baselines) write_baselines(table);
+    if (table->format == BENCH_AS_JSON)
+        write_json(&table->report);
+    else if (table->format != BENCH_AS_CSV)
+        bench_report_end(&table->report, table->explain);
 }

@@ -6,7 +6,6 @@
 #ifndef BENCH_ROW_TABLE_H
 #define BENCH_ROW_TABLE_H
 
-#include "../baselines/baselines.h"
 #include "row_report.h"
 
 typedef enum {
@@ -24,13 +23,11 @@ extern const char *const bench_format_names[];
 BenchGridForm bench_format_form(BenchFormat format);
 
 /* A table that is written while its rows are measured. JSON: {"rows": [{column: value}],
- * "environment": {...}}, at the end, with baselines also "baselines". CSV: a header line, then a
- * line for every row (RFC 4180); what is not given is empty; baselines are a second such list,
- * after an empty line. */
+ * "environment": {...}}, at the end. CSV: a header line, then a line for every row (RFC 4180); what
+ * is not given is empty. */
 typedef struct {
     BenchFormat format;
     bool explain; /* all of what stands behind the rows, as text; otherwise a line each */
-    const BenchBaselines *baselines; /* a table of these at the end; NULL: none */
     BenchReport
         report; /* file, rows, count and machine are set by the caller; the rest is zeroed */
 } BenchTable;
