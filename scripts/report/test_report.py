@@ -118,6 +118,8 @@ class ChangePoint(unittest.TestCase):
         self.assertEqual(list(change_point.find_changes(values)), [20, 35])
         ratio, low, high = change_point.ratio(values[:20], values[20:35])
         self.assertTrue(1.18 < low < ratio < high < 1.22, (low, ratio, high))
+        # medians' error is 1.25 times a mean's; 95% of errors lie within 3.9 times it
+        self.assertTrue(0.8 < np.log(high / low) / (3.9 * 1.25 * 0.01 * np.sqrt(1 / 20 + 1 / 15)) < 1.2)
 
     def test_a_series_that_does_not_change_has_no_change(self):
         """One of a hundred has; of 40 more than 3 in one run of a thousand. One slow file is no change either."""
