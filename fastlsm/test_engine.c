@@ -2,6 +2,8 @@
  * beside the brute-force engine. */
 #include "test_body.h"
 
+#include <float.h>
+
 #include "../lib/test_frame.h"
 #include "../lib/test_piece_sums.h"
 
@@ -421,6 +423,27 @@ TEST(test_bad_parameters)
         assert_true(strlen(error.text) > 10);
     }
     body_free(&body);
+}
+
+/* A body at rest is held where goals are off by rounding, and not where they are farther off. */
+TEST(rounding_alone_is_held)
+{
+    for (int trial = 0; trial < 8; trial++) {
+        Body body;
+        int length = trial / 4 ? 200 : 6, precision = trial / 2 % 2, farther = trial % 2;
+        const SmEngineType *type = engines[precision];
+        block(&body, length, 4, 3);
+        double most = 6 * (precision ? DBL_EPSILON : FLT_EPSILON) * (length + 2);
+        SmEngine *engine = create(type, &body, (SmEngineParams){.w = 1, .h = 0.01});
+        type->get(engine, SM_REST, body.x);
+        body.x[0][0] += body.voxels.cell * (farther ? 4 : 0.5) * fmin(most, precision ? 1 : 2.5e-5);
+        type->set(engine, SM_POSITION, (const double(*)[3])body.x);
+        type->step(engine, NULL);
+        type->get(engine, SM_VELOCITY, body.a);
+        if ((body.a[0][0] != 0) != farther) fail_msg("trial %d: %g", trial, body.a[0][0]);
+        type->destroy(engine);
+        body_free(&body);
+    }
 }
 
 /* The unit of mass changes nothing: neither a grain nor a mountain leaves the fast path's range. */

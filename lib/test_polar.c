@@ -166,6 +166,18 @@ TEST(test_degenerate)
 }
 
 /* Where nothing is known the last rotation stays; where one axis is, the nearest turn to it. */
+/* What has no rotation of its own, or one as far from the last as can be. */
+TEST(test_robust)
+{
+    const double turned[9] = {1, 0, 0, 0, -1, 0, 0, 0, -1}, one[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    double A[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, R[9];
+    sm_polar_robust(A, turned, 1e-12, R);
+    for (int i = 0; i < 9; i++) assert_true(fabs(R[i] - one[i]) < 1e-12);
+    A[4] = INFINITY;
+    sm_polar_robust(A, turned, 1e-12, R);
+    assert_memory_equal(R, turned, sizeof R);
+}
+
 TEST(test_last)
 {
     unsigned seed = 3;

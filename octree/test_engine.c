@@ -336,6 +336,7 @@ TEST(refuses_what_it_does_not_do)
         {{.epsilon = -1}, {.h = 0.01}, "epsilon is -1"},
         {{.epsilon = NAN}, {.h = 0.01}, "epsilon is"},
         {{.width = {.cells = -1}}, {.h = 0.01}, "width of -1 cells"},
+        {{.width = {.cells = 2e6}}, {.h = 0.01}, "width of 2e+06 cells"},
         {{.width = {.edges = INFINITY}}, {.h = 0.01}, "width of 0 cells and inf edges"},
         {{.local = {{.width = {NAN, 0}}}, .local_count = 1}, {.h = 0.01}, "width 1 is nan"},
         {{.local = {{.radius = 0.01}}, .local_count = 1}, {.h = 0.01}, "no node's centre lies in"},

@@ -1,6 +1,7 @@
 /* Holds the octree engine to its twins and to the invariants of shape matching, in both precisions
  * (SM_REAL_BITS). */
 #include "../fastlsm/fastlsm.h"
+#include "plastic.h"
 #include "test_octree_body.h"
 
 #include <limits.h>
@@ -397,7 +398,7 @@ TEST(test_instances)
 
 /* How much lower the block is than at rest, relative to its height, after having been held at half
  * of it and left alone. */
-static double dent(double creep, double *volume)
+static double dent(double creep, double yield, double *volume)
 {
     Body body;
     unsigned seed = 10;
@@ -408,7 +409,7 @@ static double dent(double creep, double *volume)
             body.x[i][d] = d == 1 ? 0.5 * x0 : x0;
             body.v[i][d] = 0;
         }
-    OctParams params = {.damping = 0.2, .creep = creep, .yield = 0.1, .most = 1};
+    OctParams params = {.damping = 0.2, .creep = creep, .yield = yield, .most = 1};
     Oct *oct = create(&body, params);
     for (int step = 0; step < 600; step++) {
         oct_step(oct, NULL);
@@ -442,10 +443,37 @@ static double dent(double creep, double *volume)
 
 TEST(test_plastic)
 {
-    double volume, elastic = dent(0, &volume), plastic = dent(0.1, &volume);
+    double volume, elastic = dent(0, 0.1, &volume), little = dent(0.1, 0.55, &volume),
+                   plastic = dent(0.1, 0.45, &volume);
     if (!(fabs(elastic) < 1e-3)) fail_msg("an elastic block keeps a dent of %g", elastic);
-    if (!(plastic > 0.1)) fail_msg("a plastic block keeps a dent of %g only", plastic);
+    if (!(fabs(little) < 1e-3)) fail_msg("a block below its yield keeps a dent of %g", little);
+    if (!(plastic > 0.01)) fail_msg("a plastic block keeps a dent of %g only", plastic);
     if (!(volume < (SINGLE ? 1e-5 : 1e-12))) fail_msg("volume off by %g", volume);
+}
+
+/* A shear's strain is capped; of a stretch the volume decides what is a shape, and of a spread how
+ * thin it is. */
+TEST(shapes_have_bounds)
+{
+    const OctParams params = {.creep = 1, .most = 0.5}, free = {.creep = 1, .most = 100};
+    const real stretch[] = {(real)-0.951, (real)-0.949, (real)18.99, (real)19.01};
+    for (int i = 0; i < 4; i++) {
+        vec strain[9] = {0}, S[9], inverse[9];
+        for (int k = 0; k < 9; k++) S[k] = lanes_set(k % 4 == 0);
+        strain[1] = lanes_set((real)0.2 * (real)(i + 1));
+        plastic_creep(&params, strain, S);
+        assert_true(fabs((double)S[1][0] - fmin(0.2 * (i + 1), 0.5)) < 1e-6);
+        for (int k = 0; k < 9; k++) S[k] = lanes_set(k % 4 == 0);
+        strain[1] = lanes_set(0);
+        strain[0] = lanes_set(stretch[i]);
+        assert_int_equal(lanes_any(plastic_creep(&free, strain, S)), i == 1 || i == 2);
+        for (int k = 0; k < 9; k++) S[k] = lanes_set(k % 4 == 0);
+        real spread[6 * SM_LANES];
+        for (int k = 0; k < 6 * SM_LANES; k++)
+            spread[k] = k >= 3 * SM_LANES ? 0 : k >= 2 * SM_LANES ? (real)1e-7 * (real)(i + 1) : 1;
+        plastic_inverse(spread, S, inverse);
+        assert_int_equal(inverse[0][0] > 0, i >= 2); /* 1e-6 / 27 * 8 is 2.96e-7 */
+    }
 }
 
 /* The octree and FastLSM engines give the same goal positions: same nodes and neighbours, equal

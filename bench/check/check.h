@@ -125,8 +125,7 @@ void bench_check_turns(const BenchCheck *check, const SmEngineType *type, SmEngi
 
 /* Runs one step of a plastic octree: the largest difference of a component of S from what eq. 10
  * makes of the state before it. Where a stretch is at the yield to within rounding, either side of
- * it is right; a creep above 1 scales rounding up and is divided out. 0 of an elastic body, which
- * is not stepped. */
+ * it is right. 0 of an elastic body, which is not stepped. */
 double bench_check_flow(const BenchCheck *check, BenchRunner *runner);
 
 /* Marks the particles of one body at x (mesh units) whose goals rest on a rotation that is not

@@ -1,10 +1,14 @@
 /* The check of goals, damping and contacts: right engines stand it where rotations are not unique,
  * and wrong damping and contacts do not. */
+#include <float.h>
+
 #include "../../fastlsm/fastlsm.h"
 #include "../../lib/test_frame.h"
 #include "../../lib/test_random.h"
+#include "../../reference/condition.h"
 #include "../play/runner.h"
 #include "contact_check.h"
+#include "runner_check.h"
 #include "step_check.h"
 
 enum { LONG = 24, WIDE = 6 };
@@ -60,7 +64,7 @@ static void plate_free(Plate *plate)
     free(plate->v);
 }
 
-static void set(Plate *plate)
+static void put(Plate *plate)
 {
     plate->type->set(plate->engine, SM_POSITION, (const double(*)[3])plate->x);
     plate->type->set(plate->engine, SM_VELOCITY, (const double(*)[3])plate->v);
@@ -81,9 +85,9 @@ static void place(Plate *plate, bool fold, bool press)
         plate->x[p][2] = press ? 0 : fold ? -fabs(along) : -along;
         for (int d = 0; d < 3; d++) plate->v[p][d] = random_unit(&seed);
     }
-    set(plate);
+    put(plate);
     plate->type->step(plate->engine, NULL);
-    set(plate);
+    put(plate);
 }
 
 static BenchDeviation check_plate(Plate *plate)
@@ -98,20 +102,47 @@ static BenchDeviation check_plate(Plate *plate)
     return found;
 }
 
+static void expect_valid(Plate *plate, BenchDeviation *found)
+{
+    char reason[160];
+    *found = check_plate(plate);
+    if (!bench_check_verdict(found, sizeof reason, reason))
+        fail_msg("%s, %s: %s", plate->type->name, plate->type->precision, reason);
+}
+
+/* Lets what the plate's engine does be replaced by what is wrong. */
+static const SmEngineType *honest;
+
+static SmEngineType *wrong_type(Plate *plate)
+{
+    static SmEngineType wrong;
+    wrong = *(honest = plate->type);
+    plate->type = &wrong;
+    return &wrong;
+}
+
+static BenchDeviation expect_invalid(Plate *plate, const char *words)
+{
+    char reason[160];
+    BenchDeviation found = check_plate(plate);
+    assert_false(bench_check_verdict(&found, sizeof reason, reason));
+    if (!strstr(reason, words))
+        fail_msg("%s, %s: %s", plate->type->name, plate->type->precision, reason);
+    return found;
+}
+
 /* Folded, the regions at the fold lie on lines, and only the engine knows how they were turned. */
 TEST(ties_are_left_out)
 {
     for (int t = 0; t < TYPES; t++) {
         Plate plate;
-        char reason[160];
+        BenchDeviation found;
         plate_create(types[t], 0, false, &plate);
         place(&plate, false, false);
-        BenchDeviation found = check_plate(&plate);
+        expect_valid(&plate, &found);
         assert_int_equal(found.tied, 0);
         place(&plate, true, false);
-        found = check_plate(&plate);
-        if (!bench_check_verdict(&found, sizeof reason, reason))
-            fail_msg("%s, %s: %s", types[t]->name, types[t]->precision, reason);
+        expect_valid(&plate, &found);
         assert_int_equal(found.particles, plate.count);
         assert_true(found.tied >= WIDE && found.tied <= plate.count / 4);
         plate_free(&plate);
@@ -125,33 +156,28 @@ TEST(ties_that_differ_alone_are_left_out)
 {
     for (int t = 0; t < TYPES; t++) {
         Plate plate;
-        char reason[160];
+        BenchDeviation found;
         plate_create(types[t], 0, false, &plate);
         place(&plate, false, true);
-        BenchDeviation found = check_plate(&plate);
+        expect_valid(&plate, &found);
         assert_int_equal(found.tied, 0);
-        assert_true(bench_check_verdict(&found, sizeof reason, reason));
         place(&plate, false, false);
         place(&plate, false, true);
-        found = check_plate(&plate);
-        assert_true(found.tied >= plate.count / 4);
-        if (strcmp(types[t]->name, "octree") !=
-            0) { /* of the octree's nodes just a quarter end elsewhere */
-            assert_false(bench_check_verdict(&found, sizeof reason, reason));
-            assert_non_null(strstr(reason, "not unique"));
-        }
+        assert_true(check_plate(&plate).tied >= plate.count / 4);
+        if (t < 2)
+            expect_invalid(&plate, "not unique"); /* of the octree's just a quarter end elsewhere */
         plate_free(&plate);
     }
 }
 
-/* Damps a little less than it is told to. */
-static const SmEngineType *honest;
+/* Damps less than it is told to, by this factor. */
+static double damped_by;
 
 static SmCode slack_create(const SmVoxels *voxels, const SmEngineParams *params, SmEngine **engine,
                            SmError *error)
 {
     SmEngineParams slack = *params;
-    slack.damping *= 0.999;
+    slack.damping *= damped_by;
     return honest->create(voxels, &slack, engine, error);
 }
 
@@ -159,23 +185,18 @@ TEST(wrong_damping_is_invalid)
 {
     for (int t = 0; t < TYPES; t++) {
         Plate plate;
-        char reason[160], text[384];
+        BenchDeviation found;
+        char text[384];
         plate_create(types[t], 0.3, false, &plate);
         place(&plate, false, false);
-        BenchDeviation found = check_plate(&plate);
-        if (!bench_check_verdict(&found, sizeof reason, reason))
-            fail_msg("%s, %s: %s", types[t]->name, types[t]->precision, reason);
+        expect_valid(&plate, &found);
         assert_true(found.damping_tolerance > 0 && found.damping_tolerance < 1e-4);
         assert_int_equal(found.unresolved, 0);
         bench_check_text(&found, sizeof text, text);
         assert_non_null(strstr(text, ", damping within "));
-        SmEngineType slack = *types[t];
-        slack.create = slack_create;
-        honest = types[t];
-        plate.type = &slack;
-        found = check_plate(&plate);
-        assert_false(bench_check_verdict(&found, sizeof reason, reason));
-        if (!strstr(reason, "damped velocities are")) fail_msg("%s", reason);
+        damped_by = 0.999;
+        wrong_type(&plate)->create = slack_create;
+        expect_invalid(&plate, "damped velocities are");
         plate_free(&plate);
     }
 }
@@ -192,14 +213,6 @@ static void roll(Plate *plate)
         plate->x[p][2] = -out * sin(angle);
     }
     plate->type->set(plate->engine, SM_POSITION, (const double(*)[3])plate->x);
-}
-
-static void expect_valid(Plate *plate, BenchDeviation *found)
-{
-    char reason[160];
-    *found = check_plate(plate);
-    if (!bench_check_verdict(found, sizeof reason, reason))
-        fail_msg("%s, %s: %s", plate->type->name, plate->type->precision, reason);
 }
 
 TEST(contacts_are_brute_forces)
@@ -258,12 +271,14 @@ static long stale_contacts(SmEngine *engine, double (*turn)[9], SmContact **cont
     return count;
 }
 
-/* An engine whose contacts are wrong, in the way of `fault`. */
+/* An engine whose contacts are wrong, in the way of `fault`; a little less is right. */
 static enum {
+    LESS,
     STALE,
     LOST,
     DEEPER,
     ASIDE,
+    LEANING,
     WEIGHED,
     OTHER_CELL,
     NO_CELL,
@@ -280,13 +295,16 @@ static long wrong_contacts(SmEngine *engine, double (*turn)[9], SmContact **cont
     SmContact *one = &(*contact)[count / 2];
     assert_true(count > 10);
     if (fault == LOST) *one = (*contact)[--count];
-    if (fault == DEEPER) one->depth += 1e-5;
+    const double tolerance = BENCH_CONTACT_TOLERANCE, cell = 0.3; /* rounding decides half of it */
+    if (fault == LESS) one->depth += 0.9 * tolerance * cell, one->out[0] += 9 * tolerance;
+    if (fault == DEEPER) one->depth += 2 * tolerance * cell;
+    if (fault == LEANING) one->out[0] += 12 * tolerance;
     if (fault == ASIDE) {
         double out = one->out[0];
         one->out[0] = one->out[2];
         one->out[2] = -out;
     }
-    if (fault == WEIGHED) one->weight[0] += 1e-4;
+    if (fault == WEIGHED) one->weight[0] += 3 * tolerance;
     if (fault == OTHER_CELL) one->cell = (one->cell + 2 * WIDE) % (LONG * WIDE);
     if (fault == NO_CELL) one->cell = one->particle - one->particle % (WIDE + 1) + LONG;
     if (fault == MADE_UP) {
@@ -295,7 +313,8 @@ static long wrong_contacts(SmEngine *engine, double (*turn)[9], SmContact **cont
         (*contact)[count++].particle = LONG / 2;
     }
     if (fault == TURNED) turn[7][0] += 1e-3;
-    for (long i = 0; i < count && fault == ALL_DEEPER; i++) (*contact)[i].depth += 1e-5;
+    for (long i = 0; i < count && fault == ALL_DEEPER; i++)
+        (*contact)[i].depth += 2 * tolerance * cell;
     return count;
 }
 
@@ -307,16 +326,16 @@ TEST(wrong_contacts_are_invalid)
         char reason[160];
         plate_create(types[t], 0, true, &plate);
         roll(&plate);
-        SmEngineType wrong = *types[t];
-        wrong.contacts = wrong_contacts;
-        honest = types[t];
-        plate.type = &wrong;
+        wrong_type(&plate)->contacts = wrong_contacts;
         for (int f = 0; f < FAULTS; f++) {
             fault = f;
             if (fault == TURNED && !strcmp(types[t]->name, "fastlsm")) continue;
             found = check_plate(&plate);
-            if (bench_check_verdict(&found, sizeof reason, reason))
-                fail_msg("%s, %s: fault %d is not seen", wrong.name, wrong.precision, f);
+            bool right = bench_check_verdict(&found, sizeof reason, reason);
+            if (right != (fault == LESS))
+                fail_msg("%s, %s: fault %d: %s", honest->name, honest->precision, f,
+                         right ? "unseen" : reason);
+            if (right) continue;
             if (!strstr(reason, "brute force")) fail_msg("fault %d: %s", f, reason);
             assert_true(fault == STALE ||
                         (found.turn_error > BENCH_TURN_TOLERANCE) == (fault == TURNED));
@@ -334,7 +353,7 @@ TEST(of_many_bodies_a_sample_is_compared)
     enum { MANY = 36 };
     static double home[MANY][3][4];
     Plate plate;
-    char reason[160];
+    BenchDeviation found;
     plate_create(&fastlsm_engine_f32, 0, false, &plate);
     plate.type->destroy(plate.engine);
     for (int i = 0; i < MANY; i++)
@@ -347,15 +366,11 @@ TEST(of_many_bodies_a_sample_is_compared)
     plate.body.instances = MANY;
     SmEngineParams params = bench_engine_params(&plate.scene, &plate.body, 1);
     assert_int_equal(plate.type->create(&plate.body.voxels, &params, &plate.engine, NULL), SM_OK);
-    BenchDeviation found = check_plate(&plate);
-    if (!bench_check_verdict(&found, sizeof reason, reason)) fail_msg("%s", reason);
+    expect_valid(&plate, &found);
     assert_int_equal(found.contact_all, MANY * plate.count);
     assert_true(found.contact_nodes > 1000 && found.contact_nodes < found.contact_all);
     assert_true(found.contacts > 1000);
-    SmEngineType wrong = *plate.type;
-    wrong.contacts = wrong_contacts;
-    honest = plate.type;
-    plate.type = &wrong;
+    wrong_type(&plate)->contacts = wrong_contacts;
     fault = ALL_DEEPER;
     found = check_plate(&plate);
     assert_int_equal(found.contacts_wrong, found.contacts);
@@ -396,7 +411,7 @@ TEST(wrong_obstacles_are_invalid)
     for (int t = 0; t < TYPES; t++) {
         Plate plate;
         BenchDeviation found;
-        char reason[160], text[384];
+        char text[384];
         plate_create(types[t], 0.2, false, &plate);
         add_obstacles(&plate);
         place(&plate, false, false);
@@ -405,15 +420,10 @@ TEST(wrong_obstacles_are_invalid)
         assert_true(found.pushed < plate.count);
         bench_check_text(&found, sizeof text, text);
         assert_non_null(strstr(text, " stopped by obstacles"));
-        SmEngineType wrong = *types[t];
-        wrong.bound = wrong_bound;
-        honest = types[t];
-        plate.type = &wrong;
+        wrong_type(&plate)->bound = wrong_bound;
         for (int k = 0; k < 2; k++) {
             smoother = k;
-            found = check_plate(&plate);
-            assert_false(bench_check_verdict(&found, sizeof reason, reason));
-            if (!strstr(reason, "meet obstacles otherwise")) fail_msg("%s", reason);
+            found = expect_invalid(&plate, "meet obstacles otherwise");
             assert_true(found.pushed_wrong > 0 && found.pushed_wrong < found.pushed);
         }
         plate_free(&plate);
@@ -507,26 +517,18 @@ TEST(what_is_not_resolved_is_compared)
 {
     for (int t = 0; t < TYPES; t++) {
         Plate strip;
-        char reason[160];
+        BenchDeviation found;
         strip_create(types[t], 220, 1, 0.3, false, &strip);
         for (long p = 0; p < strip.count; p++) {
             for (int d = 0; d < 3; d++) strip.x[p][d] = strip.body.x0[p][d] + (d == 0 ? 7 : 0);
             strip.v[p][0] = strip.v[p][2] = 0;
             strip.v[p][1] = sin(0.05 * (double)p);
         }
-        strip.type->set(strip.engine, SM_POSITION, (const double(*)[3])strip.x);
-        strip.type->set(strip.engine, SM_VELOCITY, (const double(*)[3])strip.v);
-        BenchDeviation found = check_plate(&strip);
-        if (!bench_check_verdict(&found, sizeof reason, reason))
-            fail_msg("%s, %s: %s", types[t]->name, types[t]->precision, reason);
+        put(&strip);
+        expect_valid(&strip, &found);
         assert_int_equal(found.unresolved, 0);
-        SmEngineType wrong = *types[t];
-        wrong.get = get_other_ends;
-        honest = types[t];
-        strip.type = &wrong;
-        found = check_plate(&strip);
-        assert_false(bench_check_verdict(&found, sizeof reason, reason));
-        if (!strstr(reason, "damped velocities are")) fail_msg("%s", reason);
+        wrong_type(&strip)->get = get_other_ends;
+        expect_invalid(&strip, "damped velocities are");
         plate_free(&strip);
     }
 }
@@ -557,5 +559,180 @@ TEST(every_bound_has_two_sides)
         for (int i = 0; i < 7; i++)
             if (bench_check_verdict(&of[i], sizeof reason, reason) == side)
                 fail_msg("%d: %s", i, side ? "above, and good" : reason);
+    }
+}
+
+/* Moves the particles that are `fast` by eq. 2, but faster than eq. 1 has it. */
+static const bool *fast;
+static double faster_by;
+
+static void step_faster(SmEngine *engine, SmLaps *laps)
+{
+    SmCounts counts;
+    honest->step(engine, laps);
+    honest->count(engine, &counts);
+    double(*value)[3] = sm_alloc((size_t)counts.particles, sizeof *value);
+    for (int i = 0; i < 2; i++) {
+        honest->get(engine, i ? SM_VELOCITY : SM_POSITION, value);
+        for (long p = 0; p < counts.particles; p++)
+            value[p][1] += fast[p] ? (i ? 1 : 0.01) * faster_by : 0;
+        honest->set(engine, i ? SM_VELOCITY : SM_POSITION, (const double(*)[3])value);
+    }
+    free(value);
+}
+
+/* What damping changes is checked elsewhere; undamped, velocities are eq. 1's. */
+TEST(undamped_velocities_are_eq_1s)
+{
+    static const bool one[LONG * WIDE * 4] = {[5] = true};
+    for (int t = 0; t < 2 * TYPES; t++) {
+        Plate plate;
+        bool damped = t % 2;
+        plate_create(types[t / 2], damped ? 0.2 : 0, false, &plate);
+        place(&plate, false, false);
+        wrong_type(&plate)->step = step_faster;
+        fast = one;
+        double allowed = bench_check_tolerance(honest->precision);
+        BenchRunner runner = {.scene = &plate.scene,
+                              .body = &plate.body,
+                              .type = plate.type,
+                              .engine = plate.engine,
+                              .particles = plate.count,
+                              .count = plate.count};
+        for (int more = 0; more < 2; more++) {
+            char reason[160];
+            double wanted = more && !damped ? 5 * allowed : 0;
+            faster_by = more * 5 * allowed * 0.3 / 0.01; /* cells a step */
+            assert_true(fabs(bench_check_motion(&runner) - wanted) < allowed);
+            if (!damped)
+                assert_int_equal(bench_check_runner(&runner, sizeof reason, reason), !more);
+        }
+        plate_free(&plate);
+    }
+}
+
+/* Ties may be off by as much as damping moves them, and no more. */
+TEST(ties_are_not_damped_by_more_than_all)
+{
+    for (int t = 0; t < 2 * TYPES; t++) {
+        Plate plate;
+        BenchCheck check;
+        char reason[160];
+        plate_create(types[t / 2], 0.3, false, &plate);
+        place(&plate, true, false);
+        bool *tied = sm_alloc((size_t)plate.count, sizeof *tied), more = t % 2;
+        bench_check_begin(&plate.scene, &plate.body, plate.type, plate.engine, &check);
+        bench_check_tied(&check, plate.type->precision, (const double(*)[3])plate.x, tied);
+        bench_check_free(&check);
+        wrong_type(&plate)->step = step_faster;
+        fast = tied;
+        faster_by = more ? 1e4 : 0.05;
+        BenchDeviation found = check_plate(&plate);
+        if (bench_check_verdict(&found, sizeof reason, reason) == more)
+            fail_msg("%d: %s", t, reason);
+        free(tied);
+        plate_free(&plate);
+    }
+}
+
+/* What a region's inertia is known to, between the shares of rounding where that changes. */
+TEST(what_rounding_leaves_of_an_inertia)
+{
+    static const double origin[1][3] = {{0}};
+    const RefSums sums = {origin, 1e-6, 0.1}; /* noise 8e-6 c^2 */
+    const struct {
+        double inertia; /* of what is unsure, 0.1 + noise */
+        bool known;
+    } sides[] = {{0.49, true}, {0.51, false}, {3.99, false}, {4.01, true}};
+    RefCondition c = {.spread = 1};
+    for (int i = 0; i < 4; i++) {
+        c.inertia = 0.1 * sides[i].inertia;
+        assert_int_equal(isfinite(bench_check_rounding(&c, &sums, 0)), sides[i].known);
+    }
+    c.inertia = 1;
+    static const double share[] = {0.99 / 128, 1.01 / 128, 0.99 / 32, 1.01 / 32};
+    for (int i = 0; i < 4; i++) { /* either side of a 64th, the engine counts it or not */
+        c.centre[0] = sqrt(share[i] / 8e-6);
+        double wanted = (i % 3 ? 2 : 1) * share[i] + 8e-6 + 4 * sqrt(1e-6 * share[i]);
+        assert_true(fabs(bench_check_rounding(&c, &sums, 0) - wanted) < 1e-9);
+    }
+}
+
+TEST(momentum_is_relative_to_the_spread)
+{
+    const double x[2][3] = {{-1}, {3}}, g[2][3] = {{-1}, {3 + 4e-6}}, m[] = {3, 1};
+    assert_true(fabs(bench_check_momentum(x, g, m, 2) - 4e-6 / 6) < 1e-12);
+}
+
+/* Regions whose hold is below what is known by their precision are tied, or below an eighth. */
+TEST(a_hold_decides_what_is_tied)
+{
+    for (int wide = 0; wide < 2; wide++) { /* 24 cells: a hundredth; 400: an eighth */
+        Plate strip;
+        BenchCheck check;
+        long near = 0;
+        strip_create(&fastlsm_engine_f32, wide ? 400 : 24, 1, 0, false, &strip);
+        bench_check_begin(&strip.scene, &strip.body, strip.type, strip.engine, &check);
+        for (long p = 0; p < strip.count; p++) {
+            double along = strip.body.x0[p][0] - 40, flat = along / (0.3 * (wide ? 400 : 24));
+            strip.x[p][0] = along;
+            strip.x[p][1] = 0.3 * flat * strip.body.x0[p][1];
+            strip.x[p][2] = 0.3 * flat * strip.body.x0[p][2];
+        }
+        double(*at)[3] = sm_alloc((size_t)check.count, sizeof *at);
+        bool *tied = sm_alloc((size_t)check.count, sizeof *tied);
+        bool *wanted = sm_alloc((size_t)check.count, sizeof *wanted);
+        bench_check_cells(&check, (const double(*)[3])strip.x, at);
+        double least = fmin(0.125, FLT_EPSILON * (wide ? 200 : 12) / 2 / 5e-5);
+        for (long r = 0; r < check.count; r++) {
+            RefCondition found;
+            ref_condition(&check.regions, check.weight, (const double(*)[3])check.rest,
+                          (const double(*)[3])at, r, 5e-5, &found);
+            near += found.hold >= least && found.hold < 0.24;
+            RefMembers held = ref_members(&check.regions, r);
+            for (long n = 0; n < held.count && found.hold < least; n++)
+                wanted[held.member[n]] = true;
+        }
+        assert_true(near > 0);
+        bench_check_tied(&check, "single", (const double(*)[3])strip.x, tied);
+        assert_memory_equal(tied, wanted, (size_t)check.count * sizeof *tied);
+        sm_free_all(at, tied, wanted);
+        bench_check_free(&check);
+        plate_free(&strip);
+    }
+}
+
+/* Never moves. */
+static void get_still(SmEngine *engine, SmField field, double (*values)[3])
+{
+    SmCounts counts;
+    honest->get(engine, field, values);
+    honest->count(engine, &counts);
+    if (field == SM_VELOCITY) memset(values, 0, (size_t)counts.particles * sizeof *values);
+}
+
+/* Held at rest is what does not move and is not pulled: neither alone is. */
+TEST(a_body_at_rest_neither_moves_nor_is_pulled)
+{
+    for (int t = 0; t < 2 * TYPES; t++) {
+        Plate plate;
+        bool moves = t % 2;
+        unsigned seed = 6;
+        plate_create(types[t / 2], 0.3, false, &plate);
+        for (long p = 0; p < plate.count; p++)
+            for (int d = 0; d < 3; d++) {
+                double off = random_unit(&seed) - 0.5;
+                plate.x[p][d] = plate.body.x0[p][d] + (moves ? 0 : 0.03 * off);
+                plate.v[p][d] =
+                    moves ? 1000 * bench_check_tolerance(types[t / 2]->precision) * off / 50 : 0;
+            }
+        put(&plate);
+        damped_by = 0.5;
+        if (moves)
+            wrong_type(&plate)->create = slack_create;
+        else
+            wrong_type(&plate)->get = get_still;
+        expect_invalid(&plate, "damped velocities are");
+        plate_free(&plate);
     }
 }

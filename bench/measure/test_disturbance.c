@@ -57,6 +57,27 @@ TEST(more_than_a_quarter_of_disturbed_samples_is_busy)
     assert_true(bench_watch_busy(&watch));
 }
 
+/* Whatever the host and others take here besides, up to a hundredth of the time. */
+TEST(a_tenth_taken_by_the_host_is_busy)
+{
+    for (int more = 0; more < 2; more++) {
+        BenchWatch watch = bench_watch(1);
+        watch.began -= 1000;
+        watch.stolen -= more ? 101 : 90;
+        assert_int_equal(bench_watch_busy(&watch), more);
+    }
+}
+
+TEST(a_twentieth_lost_is_a_disturbance)
+{
+    BenchWatch watch = bench_watch(1);
+    bench_watch_start(&watch);
+    while (bench_watch_stop(&watch) < 0.03) continue;
+    sleep_a_while();
+    bench_watch_stop(&watch);
+    assert_false(watch.good);
+}
+
 TEST(throttling_is_told_apart_from_other_programs)
 {
     char text[BENCH_CAUSE_TEXT];
@@ -64,10 +85,17 @@ TEST(throttling_is_told_apart_from_other_programs)
     watch.began = -1e9; /* whatever the host takes here */
     assert_string_equal(bench_watch_cause(&watch, text), "");
     watch.seconds = 1;
-    watch.lost = 0.5;
     watch.quota.cores = INFINITY;
+    watch.lost = 0.049;
+    assert_string_equal(bench_watch_cause(&watch, text), "");
+    watch.lost = 0.051;
+    assert_int_equal(strncmp(bench_watch_cause(&watch, text), "other programs took 5% of", 25), 0);
+    watch.lost = 0.5;
     assert_int_equal(strncmp(bench_watch_cause(&watch, text), "other programs took 50% of", 26), 0);
     watch.quota = (SmQuota){0.5, -INFINITY};
+    watch.lost = 0.049;
+    assert_string_equal(bench_watch_cause(&watch, text), "");
+    watch.lost = 0.5;
     assert_string_equal(bench_watch_cause(&watch, text),
                         "throttled: the container's quota of 0.5 cores took 50% of the time");
 }

@@ -126,6 +126,18 @@ TEST(planted_faults_are_caught)
     assert_false(bench_elastic_verdict(&found, sizeof reason, reason));
 }
 
+TEST(every_bound_has_two_sides)
+{
+    static const double bounds[BENCH_ELASTIC_CHECKS] = {1e-9, 1e-8, 1e-9, 1e-8, 1e-8, 1e-8, 1e-7,
+                                                        1e-6, 1e-6, 1e-5, 1e-5, 1e-6, 1e-5, 1e-10};
+    for (int n = 0; n < 2 * BENCH_ELASTIC_CHECKS; n++) {
+        BenchElasticFound found = {.looked = 0};
+        char reason[160];
+        bench_elastic_note(&found, n / 2, bounds[n / 2] * (n % 2 ? 1.01 : 0.99));
+        assert_int_equal(bench_elastic_verdict(&found, sizeof reason, reason), n % 2 == 0);
+    }
+}
+
 /* A mode left out makes none of the others wrong. */
 TEST(a_missing_mode_is_missed)
 {

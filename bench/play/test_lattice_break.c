@@ -160,6 +160,25 @@ TEST(shapes_are_shaken)
     }
 }
 
+/* By a limit that is a twentieth off, some are broken too early or too late. */
+TEST(links_that_break_at_another_limit_are_wrong)
+{
+    for (int more = 0; more < 2; more++) {
+        Run run;
+        long wrong = 0;
+        start("mesh = \"shape:liver\"; particles = 60; w = 2; h = 0.01; strain_limit = 1.3;\n"
+              "kick = 0.6; twist = 0.5;\n",
+              &run);
+        BenchRunner *runner = &run.play.group[0].runner;
+        BenchScene other = *runner->scene;
+        other.params.strain_limit *= more ? 1.05 : 0.95;
+        runner->scene = &other;
+        for (int step = 0; step < 12; step++) wrong += bench_parted_step_wrong(runner);
+        assert_true(wrong > 0);
+        end(&run);
+    }
+}
+
 /* A blade and strain at once: what a blade has cut is not torn again. */
 TEST(cut_while_it_breaks)
 {

@@ -520,4 +520,22 @@ TEST(no_verdict_by_one_of_three)
     assert_true(seen[0] > 0 && seen[1] > 0);
 }
 
+/* Of twenty rounds three are the other way round: each test but the interval's is sure. */
+TEST(no_verdict_where_the_interval_holds_one)
+{
+    const BenchCompareParams params = {true, 20, NAN, 1, false, false};
+    for (int late = 0; late < 2; late++) {
+        BenchAbSamples all = {0};
+        BenchComparison *list;
+        for (int i = 0; i < 80; i++)
+            add(&all, i % 2, i / 4, "a", 1, i % 2 != late ? 1 : i < 12 ? 0.95 : 1.1);
+        int count = bench_compare(&all, &params, &list);
+        assert_true(list->adjusted < 0.01 && list->low < 1 && list->high > 1);
+        assert_true(fabs(log(list->ratio)) > log1p(list->threshold));
+        assert_int_equal(list->verdict, BENCH_SAME);
+        bench_comparisons_free(list, count);
+        bench_ab_free(&all);
+    }
+}
+
 TEST_GROUP(start, end)

@@ -2,6 +2,7 @@
  * along edges, through vertices, in the plane. */
 #include "cut.h"
 
+#include "../predicates.h"
 #include "../test_frame.h"
 #include "../test_random.h"
 
@@ -150,4 +151,18 @@ TEST(what_lies_in_the_plane_of_a_far_triangle_is_not_cut)
         apart++;
     }
     assert_true(apart > 1000);
+}
+
+/* Which side of the diagonal a place is on, however near. */
+TEST(sides_are_exact)
+{
+    for (int n = 0; n < 32 * 32; n++) {
+        int i = n % 32, j = n / 32, wanted = (i < j) - (i > j);
+        const double x = 0.5 + i * 0x1p-53, y = 0.5 + j * 0x1p-53;
+        assert_int_equal(
+            sm_orient2((double[]){x, y}, (double[]){12.1, 12.1}, (double[]){24.3, 24.3}), wanted);
+        assert_int_equal(sm_orient3((double[]){x, y, 0.1}, (double[]){12, 12, 0.3},
+                                    (double[]){24, 24, 7}, (double[]){24, 24, 0.7}),
+                         -wanted);
+    }
 }

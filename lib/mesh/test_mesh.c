@@ -154,14 +154,16 @@ TEST(test_merge_drops)
 /* Every corner rounded its own way: merged when that closes the mesh, else not. */
 TEST(test_merge_closes_rounding_gaps)
 {
-    SmMesh mesh = loose_cube();
-    for (int v = 0; v < 36; v++) mesh.position[v][v % 3] += 1e-9 * (v % 7);
-    sm_mesh_merge(&mesh);
-    assert_int_equal(mesh.vertex_count, 8);
-    assert_true(sm_mesh_info(&mesh).watertight);
-    sm_mesh_free(&mesh);
+    for (int far = 0; far < 2; far++) {
+        SmMesh mesh = loose_cube();
+        for (int v = 0; v < 36; v++) mesh.position[v][v % 3] += (far ? 2e-7 : 1e-8) * (v % 7);
+        sm_mesh_merge(&mesh);
+        assert_int_equal(mesh.vertex_count == 8, !far);
+        assert_int_equal(sm_mesh_info(&mesh).watertight, !far);
+        sm_mesh_free(&mesh);
+    }
 
-    mesh = loose_cube();
+    SmMesh mesh = loose_cube();
     for (int v = 0; v < 36; v++) mesh.position[v][v % 3] += 1e-9 * (v % 7);
     mesh.triangle_count = 11; /* an open edge would stay: only equal places are merged */
     int places = 0;
@@ -185,6 +187,10 @@ TEST(test_components_and_degenerate)
     assert_int_equal(info.components, 3);
     assert_int_equal(info.open_edges, 9);
     assert_int_equal(info.degenerate, 1);
+    mesh.position[7][1] = 1e-15;
+    assert_int_equal(sm_mesh_info(&mesh).degenerate, 1);
+    mesh.position[7][1] = 1e-13;
+    assert_int_equal(sm_mesh_info(&mesh).degenerate, 0);
     sm_mesh_free(&mesh);
 }
 
@@ -242,6 +248,10 @@ TEST(test_check)
     mesh.triangle[7][2] = -1;
     expect_refusal(&mesh, "a triangle names");
     mesh.triangle[7][2] = 0;
+    for (int i = 0; i < 24; i++) mesh.position[i / 3][i % 3] *= 2e-30;
+    assert_int_equal(sm_mesh_check(&mesh, "some.obj", NULL), SM_OK);
+    for (int i = 0; i < 24; i++) mesh.position[i / 3][i % 3] *= 0.25;
+    expect_refusal(&mesh, "scale it");
     memset(mesh.position, 0, 8 * sizeof *mesh.position);
     expect_refusal(&mesh, "one point");
     sm_mesh_free(&mesh);

@@ -1,5 +1,6 @@
 /* Operations on lanes against what they do to one lane after the other, in both precisions
  * (SM_REAL_BITS). */
+#include "rigid_lanes.h"
 #include "rows.h"
 
 #include <float.h>
@@ -283,4 +284,30 @@ TEST(rows_are_gathered_and_scattered)
         for (int i = 0; i < SM_LANES; i++) assert_true(field[f][i] == 100 * i + f);
     lanes_to_rows(field, to);
     for (int i = 0; i < SM_LANES; i++) assert_memory_equal(to[i], from[i], sizeof *back);
+}
+
+/* Inertias about x just beyond what rigid_lanes.h says of noise, and an indefinite one of a spread
+ * that is all noise: J is I, I + noise, tr S, or tr S + noise, and 1 / J is turned to along x. */
+TEST(inertias_are_held_clear_of_noise)
+{
+    const double thinnest = SM_REAL_BITS == 32 ? 1e-5 : 1e-10, n = 8 * (double)SM_EPSILON;
+    const struct {
+        double S[3], size, J; /* S on the diagonal alone */
+    } cases[] = {{{1, 0.55 * thinnest, 0.55 * thinnest}, 0, 1.1 * thinnest},
+                 {{1, 0.45 * thinnest, 0.45 * thinnest}, 0, 1},
+                 {{1, 35e-4, 35e-4}, 1e-4 / n, 70e-4},
+                 {{1, 30e-4, 30e-4}, 1e-4 / n, 61e-4},
+                 {{1, 0.6e-4, 0.6e-4}, 1e-4 / n, 2.2e-4},
+                 {{1, 0.4e-4, 0.4e-4}, 1e-4 / n, 1},
+                 {{1, 0, 0}, 0.017 / n, 1.017},
+                 {{0.9, -1e-4, -1e-4}, 1e-4 / n, 0.8998},
+                 {{-2.95, 0.05, 0.05}, 0.05 / n, 0.05},
+                 {{-1.1, 1, 1}, 1e-4 / n, 0.9}};
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+        vec S[6] = {0}, L[3] = {lanes_set(1)}, omega[3];
+        for (int d = 0; d < 3; d++) S[d] = lanes_set((real)cases[c].S[d]);
+        angular_velocity(S, L, lanes_set((real)cases[c].size), omega);
+        double found = (double)omega[0][0] * cases[c].J;
+        if (!(fabs(found - 1) < 1e-3)) fail_msg("%d: %g of 1 / J", (int)c, found);
+    }
 }

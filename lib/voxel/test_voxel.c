@@ -62,3 +62,38 @@ TEST(an_empty_lattice_has_no_particles)
     assert_int_equal(v.particle_count, 0);
     sm_voxels_free(&v);
 }
+
+static double square_to(const double q[3], const int cell[3])
+{
+    double sum = 0;
+    for (int d = 0; d < 3; d++) sum += pow(fmax(fmax(cell[d] - q[d], q[d] - cell[d] - 1), 0), 2);
+    return sum;
+}
+
+/* From anywhere within the lattice to a few cells that lie far apart. */
+TEST(the_nearest_cell_is_that_of_all)
+{
+    for (int trial = 0; trial < 400; trial++) {
+        SmVoxels v;
+        int cell[6][3], found[3],
+            size[3] = {1 + trial % 40, 1 + random_int(&seed, 40), 1 + trial % 3 * 15};
+        double q[3], least = INFINITY;
+        bool beside = false; /* a neighbour of q's cell */
+        sm_voxels_init(&v, size[0], size[1], size[2], 1);
+        for (int d = 0; d < 3; d++) q[d] = random_between(&seed, 0, size[d]);
+        for (int n = 0; n < 6; n++) {
+            int away = 0;
+            for (int d = 0; d < 3; d++) {
+                cell[n][d] = random_int(&seed, size[d]);
+                away = (int)fmax(away, abs(cell[n][d] - (int)q[d]));
+            }
+            beside |= away <= 1;
+            sm_voxel_set(&v, cell[n][0], cell[n][1], cell[n][2]);
+            least = fmin(least, square_to(q, cell[n]));
+        }
+        sm_nearest_cell(&v, q, found);
+        assert_true(sm_voxel_get(&v, found[0], found[1], found[2]));
+        assert_true(beside || square_to(q, found) == least);
+        sm_voxels_free(&v);
+    }
+}

@@ -226,6 +226,14 @@ TEST(faces_on_cell_boundaries_are_not_doubled)
     assert_int_equal(v.cell_count, 1000000);
     sm_voxels_free(&v);
 
+    for (int over = 0; over < 2; over++) {
+        SmMesh large = box(0, 0, 0, 10 + (over ? 1e-6 : 1e-7), 10, 10);
+        v = made(&large, SM_SOLID, 1, NULL);
+        assert_int_equal(v.size[0], 10 + over);
+        sm_voxels_free(&v);
+        sm_mesh_free(&large);
+    }
+
     SmMesh near = box(10, 0, 0, 20, 10, 10);
     join(&m, &near, false);
     v = made(&m, SM_SOLID, 1, NULL);
@@ -348,6 +356,12 @@ TEST(absurd_input_is_an_error)
     expect_error(&m, SM_SOLID, 1, -5);
     if (sizeof(long) > sizeof(int)) expect_error(&m, SM_SOLID, 1, LONG_MAX);
     expect_error(&none, SM_SOLID, 1, 0);
+    SmMesh large = box(0, 0, 0, 1291, 1291, 1291); /* more than 2^31 cells */
+    expect_error(&large, SM_SOLID, 1, 0);
+    for (long t = 0; t < large.triangle_count; t++)
+        memset(large.triangle[t], 0, sizeof *large.triangle);
+    expect_error(&large, SM_SOLID, 10, 0);
+    sm_mesh_free(&large);
     m.position[3][1] = NAN;
     expect_error(&m, SM_SOLID, 0.1, 0);
     for (long i = 0; i < m.vertex_count; i++)

@@ -83,6 +83,11 @@ static void end(Voxeliser *v)
     memset(v, 0, sizeof *v);
 }
 
+static double cells_along(double extent)
+{
+    return fmax(1, ceil(extent - OVERHANG));
+}
+
 /* The fewest cells that hold the mesh, moved by `shift`. False beyond the limits of voxelise.h. */
 static bool place(const Voxeliser *v, double cell, const double shift[3], Placement *at)
 {
@@ -90,10 +95,9 @@ static bool place(const Voxeliser *v, double cell, const double shift[3], Placem
     for (int d = 0; d < 3; d++) {
         double extent = v->extent[d] / cell;
         if (!(extent < INT_MAX - 2)) return false;
-        double fewest = fmax(1, ceil(extent - OVERHANG));
-        double pad = (fewest - extent) / 2 + shift[d];
+        double pad = (cells_along(extent) - extent) / 2 + shift[d];
         at->pad[d] = pad >= 1 ? pad - 1 : pad;
-        at->size[d] = (int)fmax(1, ceil(extent + at->pad[d] - OVERHANG));
+        at->size[d] = (int)cells_along(extent + at->pad[d]);
         cells *= at->size[d];
     }
     double padded = ceil(at->size[0] / 64.0) * 64 * at->size[1] * at->size[2];

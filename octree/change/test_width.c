@@ -56,24 +56,27 @@ TEST(a_width_is_found_for_summation_nodes)
 {
     SmVoxels voxels;
     make_voxels(&voxels);
-    OctOptions options = {
-        .epsilon = 0.5, .summation_nodes = 8, .sampling = {.levels = 2, .nodes = 90}};
-    SmEngineParams params = usual(&options);
-    SmCounts counts;
-    SmEngine *engine = make(1, &voxels, &params, &counts);
-    double edges = oct_engine_structure(engine)->width.edges, found = counts.summation_nodes;
-    octree_engine_f64.destroy(engine);
-    assert_true(fabs(found - 8) < 3);
-    options.summation_nodes = 0; /* no other sixteenth of an edge comes nearer */
-    int same = 0;
-    for (int step = 1; step <= 64; step++) {
-        options.width.edges = step / 16.0;
-        engine = make(1, &voxels, &params, &counts);
-        assert_true(fabs(counts.summation_nodes - 8) >= fabs(found - 8));
-        same += options.width.edges == edges && counts.summation_nodes == found;
+    for (double wanted = 4; wanted < 20;
+         wanted += wanted < 11 ? 1 : 5) { /* there are not 16 within four edges */
+        OctOptions options = {
+            .epsilon = 0.5, .summation_nodes = wanted, .sampling = {.levels = 2, .nodes = 90}};
+        SmEngineParams params = usual(&options);
+        SmCounts counts;
+        SmEngine *engine = make(1, &voxels, &params, &counts);
+        double edges = oct_engine_structure(engine)->width.edges, found = counts.summation_nodes;
         octree_engine_f64.destroy(engine);
+        options.summation_nodes = 0; /* no sixteenth of an edge beside it comes nearer */
+        int same = 0, beside = wanted < 16;
+        assert_int_equal(edges == OCT_WIDTH_EDGES, wanted == 16);
+        for (int by = -beside; by <= beside; by++) {
+            options.width.edges = edges + by / 16.0;
+            engine = make(1, &voxels, &params, &counts);
+            assert_true(fabs(counts.summation_nodes - wanted) >= fabs(found - wanted));
+            same += options.width.edges == edges && counts.summation_nodes == found;
+            octree_engine_f64.destroy(engine);
+        }
+        assert_int_equal(same, 1);
     }
-    assert_int_equal(same, 1);
     sm_voxels_free(&voxels);
 }
 

@@ -2,6 +2,7 @@
 #include "tree.h"
 
 #include "../../lib/test_frame.h"
+#include "mass.h"
 #include "test_trees.h"
 
 /* Does the node's cell hold finest cell `at`? */
@@ -130,6 +131,39 @@ TEST(pruning_again_is_pruning_once)
     oct_tree_free(&once);
     oct_tree_free(&again);
     sm_voxels_free(&v);
+}
+
+/* Rows of several words, in nodes as wide: what all weigh is what the vertices do. */
+TEST(wide_nodes_weigh_all_that_they_hold)
+{
+    unsigned seed = 4;
+    for (int levels = 1; levels <= 8; levels++) {
+        SmVoxels v;
+        OctTree t;
+        OctMass mass;
+        double all = 0, sum = 0;
+        long cells = 0;
+        sm_voxels_init(&v, 200, 3, 3, 1);
+        for (int i = 0; i < 1800; i++)
+            if (random_int(&seed, 3)) sm_voxel_set(&v, i / 9, i / 3 % 3, i % 3);
+        sm_voxels_count(&v);
+        double *vertex = sm_alloc((size_t)v.particle_count, sizeof *vertex);
+        for (long p = 0; p < v.particle_count; p++) all += vertex[p] = random_unit(&seed);
+        random_split_tree(&seed, &v, levels, (int[3]){-5, 0, 0}, 0, &t);
+        oct_mass_init(&mass, &v, vertex, OCT_MATERIAL);
+        for (long l = 0; l < t.leaves; l++) {
+            int node = t.node[l], low[3];
+            for (int d = 0; d < 3; d++) low[d] = oct_tree_low(&t, node, d);
+            sum += oct_mass_of(&mass, &t, &v, node);
+            cells += oct_mass_cells(&v, low, t.size[node] / 2);
+        }
+        assert_true(fabs(sum - all) < 1e-9 * all);
+        assert_int_equal(cells, v.cell_count);
+        free(vertex);
+        oct_mass_free(&mass);
+        oct_tree_free(&t);
+        sm_voxels_free(&v);
+    }
 }
 
 TEST(what_cannot_be_a_tree_is_refused)

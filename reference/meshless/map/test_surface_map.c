@@ -3,6 +3,7 @@
 
 #include "../../../lib/mesh/import.h"
 #include "../test_solver.h"
+#include "harmonic.h"
 #include "test_surfaces.h"
 
 static unsigned seed = 1;
@@ -467,6 +468,24 @@ static SmMesh moebius_strip(int around, int fins)
         memcpy(mesh.triangle[n], (int[3]){2, 3, n}, sizeof *mesh.triangle);
     }
     return mesh;
+}
+
+/* Three triangles with two edges between vertices 1 and 2, one of them on the rim: where a form is
+ * harmonic, what flows into each vertex flows out of it. */
+TEST(forms_are_harmonic_where_two_edges_join_two_vertices)
+{
+    needs_solver();
+    int vertex[9] = {1, 3, 2, 1, 2, 0, 2, 3, 1}, twin[9] = {7, 6, 3, 2, -1, -1, 1, 0, -1};
+    double weight[9] = {1, 2, 3, 3, 4, 5, 2, 1, 6}, form[9] = {1, 3, -2, 2, 1, -4, -3, -1, 5};
+    double *forms[1] = {form}, left[4] = {0};
+    RefTriangulation surface = {.triangles = 3, .vertices = 4, .vertex = vertex, .twin = twin};
+    assert_true(ref_harmonic_product(&surface, weight, form, form) == 265);
+    assert_int_equal(ref_harmonic_solve(&surface, weight, NULL, 1, forms, NULL), SM_OK);
+    for (int c = 0; c < 9; c++) {
+        left[vertex[c]] += weight[c] * form[c];
+        if (twin[c] < 0) left[vertex[ref_corner_next(c)]] -= weight[c] * form[c];
+    }
+    for (int v = 0; v < 4; v++) assert_true(fabs(left[v]) < 1e-12);
 }
 
 /* A rim of three edges has no four corners: its triangle is cut into four, and stays open. */

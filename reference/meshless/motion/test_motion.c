@@ -312,8 +312,8 @@ TEST(sag)
     beam_free(&beam);
 }
 
-/* One end stays, the other is led away and turned by 90 degrees: both constraints hold at every
- * step. */
+/* One end stays, the other is led away and turned by 90 degrees, then back in one step: both
+ * constraints hold at every step. */
 TEST(constraints_hold)
 {
     needs_solver();
@@ -329,11 +329,12 @@ TEST(constraints_hold)
         ref_motion_hold(&beam.body, REF_HOLD_POSITION, (double[]){99, 0, 0}, &beam.motion), -1);
     double most = 0;
     for (int step = 0; step < 400; step++) {
-        double share = fmin(step / 300.0, 1), now[3], off[3];
+        double share = step < 399 ? fmin(step / 300.0, 1) : 0, now[3], off[3];
         beam.motion.hold[2].target[0] = -2 * share;
         beam.motion.hold[2].target[1] = 2.5 * share;
         beam.motion.hold[3].target[2] = acos(0) * share;
         ref_motion_step(&beam.motion, 0.01);
+        assert_true(step == 399 || ref_motion_energy(&beam.motion) < 1e7);
         for (int k = 0; k < 4; k++) {
             ref_motion_off(&beam.motion, k, off);
             for (int d = 0; d < 3; d++) most = at_worst(most, fabs(off[d]));
@@ -343,8 +344,7 @@ TEST(constraints_hold)
             most = at_worst(most, fabs(now[d] - ends[1][d] - beam.motion.hold[2].target[d]));
     }
     print_message("constraints off by %.1e at most\n", most);
-    assert_true(most < 1e-6);
-    assert_true(ref_motion_energy(&beam.motion) < 1e7);
+    assert_true(most < 1e-9);
     beam_free(&beam);
 }
 
@@ -382,11 +382,11 @@ TEST(turned_too_far)
     ref_motion_pose(motion);
     for (long n = 0; n < motion->nodes; n++)
         turn = fmax(turn, sqrt(sm_dot(motion->rotation[n], motion->rotation[n])));
-    ref_motion_confine(motion, 2 * turn);
+    ref_motion_confine(motion, 1.1 * turn);
     assert_memory_equal(motion->z, before, sizeof before);
-    ref_motion_confine(motion, turn / 3);
-    for (int k = 0; k < MODES; k++) assert_true(fabs(motion->z[k] / before[k] - 1.0 / 3) < 1e-12);
-    assert_true(fabs(motion->speed[2] / 7 - 1.0 / 3) < 1e-12);
+    ref_motion_confine(motion, 0.9 * turn);
+    for (int k = 0; k < MODES; k++) assert_true(fabs(motion->z[k] / before[k] - 0.9) < 1e-12);
+    assert_true(fabs(motion->speed[2] / 7 - 0.9) < 1e-12);
     motion->z[3] = NAN;
     ref_motion_pose(motion);
     ref_motion_confine(motion, turn);
