@@ -83,13 +83,6 @@ double bench_memory_available(void)
     return fmin(1024 * read_number("/proc/meminfo", "MemAvailable:"), group_leaves());
 }
 
-void bench_memory_own(double *now, double *most)
-{
-    *now = 1024 * read_number("/proc/self/status", "VmRSS:");
-    *most = 1024 * read_number("/proc/self/status", "VmHWM:");
-    if (!isfinite(*now) || !isfinite(*most)) *now = *most = NAN;
-}
-
 static SmCode check(const char *what, const char *engine, double particles, double wanted,
                     SmError *error)
 {

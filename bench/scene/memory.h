@@ -16,10 +16,6 @@ double bench_memory_brute(const BenchScene *scene, double particles);
  * leaves, its cache of files given back, if that is less. INFINITY where neither is known. */
 double bench_memory_available(void);
 
-/* Bytes of memory that this process has now, and the most that it has had; NAN where Linux does not
- * say. */
-void bench_memory_own(double *now, double *most);
-
 /* SM_MEMORY, with a line, when the first is more than four fifths of the second. */
 SmCode bench_memory_check(const BenchScene *scene, double particles, SmError *error);
 
