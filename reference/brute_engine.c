@@ -227,7 +227,14 @@ static void brute_step(SmEngine *engine, SmLaps *laps)
 static void brute_goals(SmEngine *engine)
 {
     int team = sm_team_enter(engine->params.threads);
-    for (long b = 0; b < engine->params.instances; b++) match_body(engine, engine->body + b, NULL);
+    size_t count = (size_t)engine->count;
+    for (Body *body = engine->body; body < engine->body + engine->params.instances; body++) {
+        RefMatch *last = body->match; /* whose R the next step begins from */
+        body->match = sm_copy(last, count, sizeof *last);
+        match_body(engine, body, NULL);
+        free(body->match);
+        body->match = last;
+    }
     sm_team_leave(team);
 }
 

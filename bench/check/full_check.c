@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../lib/vector.h"
 #include "../engines.h"
 #include "runner_check.h"
 

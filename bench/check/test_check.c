@@ -215,6 +215,32 @@ static void roll(Plate *plate)
     plate->type->set(plate->engine, SM_POSITION, (const double(*)[3])plate->x);
 }
 
+/* The rotations that a step begins from are those of the step before, whether or not goals were
+ * asked for: contacts of the octree, and regions on a line, are as these are. */
+TEST(goals_change_nothing_that_follows)
+{
+    for (int t = 0; t < TYPES; t++)
+        for (int rolled = 0; rolled < 2; rolled++) {
+            Plate plate[2];
+            for (int p = 0; p < 2; p++) {
+                plate_create(types[t], 0, rolled, &plate[p]);
+                place(&plate[p], false, false);
+                if (rolled)
+                    roll(&plate[p]);
+                else
+                    place(&plate[p], false, true);
+                for (int step = 0; step < 4; step++) {
+                    if (p) types[t]->goals(plate[p].engine);
+                    types[t]->step(plate[p].engine, NULL);
+                }
+                types[t]->get(plate[p].engine, SM_POSITION, plate[p].x);
+            }
+            size_t bytes = (size_t)plate[0].count * sizeof *plate[0].x;
+            assert_memory_equal(plate[0].x, plate[1].x, bytes);
+            for (int p = 0; p < 2; p++) plate_free(&plate[p]);
+        }
+}
+
 TEST(contacts_are_brute_forces)
 {
     for (int t = 0; t < TYPES; t++) {

@@ -17,7 +17,7 @@ typedef struct {
     bool there[BENCH_BUILDS]; /* which builds have it, as far as is known */
     char checked[BENCH_BUILDS][sizeof((BenchRow *)0)->state_hash]; /* their state's, or empty */
     bool refused[BENCH_BUILDS]; /* the build cannot be told that */
-    int repeats;                /* of processes that are; 0: not known */
+    int repeats;                /* after the first round, of both builds; 0: as the task says */
     char reason[224];           /* why the old one has not */
 } State;
 
@@ -31,7 +31,7 @@ typedef struct {
 
 /* The words of a `tables` process; numbers are written into `number`. */
 static void make_words(const BenchAbRunner *runner, const BenchTask *task, const State *state,
-                       BenchBuild build, const char *output, char number[4][32],
+                       BenchBuild build, int round, const char *output, char number[4][32],
                        const char *word[WORDS])
 {
     int count = 0;
@@ -46,7 +46,7 @@ static void make_words(const BenchAbRunner *runner, const BenchTask *task, const
         {"--checked", checked},     {"-o", output},
     };
     snprintf(number[0], 32, "%d", task->threads > 0 ? task->threads : 1);
-    snprintf(number[1], 32, "%d", checked ? state->repeats : task->repeats);
+    snprintf(number[1], 32, "%d", round && state->repeats ? state->repeats : task->repeats);
     snprintf(number[2], 32, "%.6g", task->block);
     snprintf(number[3], 32, "%lu", runner->seed);
     word[count++] = runner->program[build];
@@ -89,14 +89,17 @@ static void say_why(const State *state, BenchAbScene *samples)
         snprintf(old->reason, sizeof old->reason, "%s", state->reason);
 }
 
-/* Of what is one row, from then on. */
-static void note_checked(const BenchTask *task, BenchBuild build, const BenchRow *row, State *state)
+/* Of what is one row: its state; and how many repeats fit, but where a file is compared with, which
+ * has as many as the task: of fewer the least is larger. */
+static void note_row(const BenchAbRunner *runner, const BenchTask *task, BenchBuild build,
+                     const BenchRow *row, State *state)
 {
-    if (!row->valid || row->busy || state->refused[build]) return;
+    if (!row->valid || row->busy) return;
+    if (!state->refused[build])
+        memcpy(state->checked[build], row->state_hash, sizeof row->state_hash);
+    if (!runner->program[BENCH_OLD] || state->repeats) return;
     double repeat = 2 * (row->steps + 2) * row->total_ms / 1e3;
-    int fit = (int)fmin(BENCH_PROCESS_SECONDS / repeat, task->repeats);
-    if (!state->repeats) state->repeats = fit > 21 || fit == task->repeats ? fit : 21;
-    memcpy(state->checked[build], row->state_hash, sizeof row->state_hash);
+    state->repeats = (int)fmin(fmax(BENCH_PROCESS_SECONDS / repeat, 21), task->repeats);
 }
 
 static SmCode keep(Session *session, const BenchTask *task, State *state, BenchBuild build,
@@ -116,7 +119,7 @@ static SmCode keep(Session *session, const BenchTask *task, State *state, BenchB
         if (session->runner->by_cycles && rows[i].valid && !bench_row_counted(&rows[i]))
             state->there[BENCH_OLD] = state->there[BENCH_NEW] = false;
     }
-    if (count == 1) note_checked(task, build, rows, state);
+    if (count == 1) note_row(session->runner, task, build, rows, state);
     bench_rows_free(rows, count);
     if (!session->measured[build]) session->machine[build] = machine;
     session->measured[build] = true;
@@ -131,7 +134,7 @@ static SmCode run_process(Session *session, const BenchTask *task, BenchBuild bu
     const char *word[WORDS];
     snprintf(output, sizeof output, "%.4000s/rows.h5", runner->folder);
     snprintf(log, sizeof log, "%.4000s/process.txt", runner->folder);
-    make_words(runner, task, state, build, output, number, word);
+    make_words(runner, task, state, build, round, output, number, word);
     BenchProcess process = {.word = word, .output = log};
     BenchProcessEnd end;
     SmCode code = bench_process_run(&process, &end, error);

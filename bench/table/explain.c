@@ -43,10 +43,11 @@ static void brief_row(FILE *file, const BenchRow *row, int width)
         fprintf(file, "INVALID: %s\n", row->reason);
         return;
     }
-    if (bench_row_of_elastic(row))
-        fprintf(file, "all %d checks hold", checks_made(row));
-    else if (isnan(row->goal_error))
+    bool elastic = bench_row_of_elastic(row);
+    if (elastic ? !checks_made(row) : isnan(row->goal_error))
         fputs("checked before", file);
+    else if (elastic)
+        fprintf(file, "all %d checks hold", checks_made(row));
     else
         fprintf(file, "goals %.1e, drift %.0e%s", row->goal_error, row->drift,
                 row->plain ? " plain" : "");

@@ -310,14 +310,14 @@ typedef struct {
     SmBox box;
 } Component;
 
-/* Components inside out, as the whole is not, in the box of the largest. */
+/* Components inside out, as the whole is not, in the box of the largest; not rounding's sign. */
 static void count_cavities(long count, const Component *part, SmMeshInfo *info)
 {
     const Component *largest = part;
     for (long c = 1; c < count; c++)
         if (fabs(part[c].six_volumes) > fabs(largest->six_volumes)) largest = part + c;
     for (long c = 0; c < count; c++)
-        if (part[c].six_volumes * info->volume < 0 &&
+        if (part[c].six_volumes / info->volume < -1e-9 &&
             sm_box_holds(&largest->box, part[c].box.low) &&
             sm_box_holds(&largest->box, part[c].box.high)) {
             info->cavities++;
