@@ -56,12 +56,14 @@ static double face_distance(const SmCollideRest *rest, long k, int side, const d
     return sqrt(sm_dot(off, off));
 }
 
+enum { NEAREST = SM_COLLIDE_FACES * SM_COLLIDE_FACES };
+
 /* The outer faces, as 6 cell + side, that the depth in cell k is measured to: its own, or of those
  * of the cells across its faces one level up, the nearest to its centre. Returns how many. */
-static int faces_of(const RefCollide *twin, long k, int face[SM_COLLIDE_FACES])
+static int faces_of(const RefCollide *twin, long k, int face[NEAREST])
 {
     const SmCollideRest *rest = twin->rest;
-    int count = 0, all = 0, any[SM_COLLIDE_FACES * SM_COLLIDE_FACES];
+    int count = 0, all = 0, any[NEAREST];
     double nearest = DBL_MAX, point[3];
     for (int side = 0; side < SM_COLLIDE_FACES; side++) {
         int other = rest->across[k][side];
@@ -74,7 +76,7 @@ static int faces_of(const RefCollide *twin, long k, int face[SM_COLLIDE_FACES])
     for (int i = 0; i < all; i++)
         nearest =
             fmin(nearest, face_distance(rest, any[i] / 6, any[i] % 6, rest->centre[k], point));
-    for (int last = -1, next = 0; next != INT_MAX && count < SM_COLLIDE_FACES; last = next) {
+    for (int last = -1, next = 0; next != INT_MAX; last = next) {
         next = INT_MAX; /* the nearest ones by rising number */
         for (int i = 0; i < all; i++)
             if (any[i] > last && any[i] < next &&
@@ -90,7 +92,7 @@ static bool depth_at(const RefCollide *twin, long k, const double q[3], double r
                      double *depth, double out[3])
 {
     const SmCollideRest *rest = twin->rest;
-    int face[SM_COLLIDE_FACES], count = faces_of(twin, k, face);
+    int face[NEAREST], count = faces_of(twin, k, face);
     double best = DBL_MAX, point[3];
     bool inside = true;
     for (int d = 0; d < 3; d++) inside &= fabs(q[d] - rest->centre[k][d]) <= rest->edge[k] / 2;

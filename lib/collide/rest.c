@@ -11,11 +11,15 @@
 #define SLACK SM_COLLIDE_SLACK
 
 /* The flood's own: faces by number 6 cell + side. */
+/* Faces of the six cells beside one that may all be as near to its middle. */
+enum { NEAREST = SM_COLLIDE_FACES * SM_COLLIDE_FACES };
+
 typedef struct {
     const SmCollideRest *rest;
     int *level; /* [cells] SM_COLLIDE_LAYERS for what was not reached */
     long *first;
-    int *count, *face; /* [cells], [cells][SM_COLLIDE_FACES] */
+    int *count, *face; /* [cells], [faces] from first[cell] on */
+    long faces, room;
 } Flood;
 
 static void face_of(const SmCollideRest *rest, int number, SmCollideFace *face)
@@ -40,63 +44,67 @@ static double to_face(const SmCollideFace *face, const double q[3], double offse
     return sqrt(square);
 }
 
-/* Adds a face to the list of a cell that keeps the nearest ones. */
-static void offer(Flood *flood, int cell, int number, double *nearest)
+/* Adds a face to the list of a cell that keeps the nearest ones, by rising number. */
+static int offer(const SmCollideRest *rest, int cell, int number, double *nearest,
+                 int list[NEAREST], int count)
 {
     SmCollideFace face;
     double offset[3];
-    int *list = flood->face + (long)cell * SM_COLLIDE_FACES;
-    face_of(flood->rest, number, &face);
-    double distance = to_face(&face, flood->rest->centre[cell], offset);
-    if (distance > *nearest + SLACK) return;
+    face_of(rest, number, &face);
+    double distance = to_face(&face, rest->centre[cell], offset);
+    if (distance > *nearest + SLACK) return count;
     if (distance < *nearest - SLACK) {
-        flood->count[cell] = 0;
+        count = 0;
         *nearest = distance;
     }
-    int at = flood->count[cell];
-    for (int i = 0; i < at; i++)
-        if (list[i] == number) return;
-    bool full = at == SM_COLLIDE_FACES; /* then those of the lowest numbers stay */
-    if (full && number > list[at - 1]) return;
-    if (full)
-        at--;
-    else
-        flood->count[cell]++;
+    int at = count;
     for (; at > 0 && list[at - 1] > number; at--) list[at] = list[at - 1];
     list[at] = number;
+    return count + 1;
 }
 
-static void flood_layer(Flood *flood, int level)
+static void keep_faces(Flood *flood, int cell, int level, int count, const int *list)
 {
-    const SmCollideRest *rest = flood->rest;
-    for (int cell = 0; cell < rest->cells; cell++) {
-        double nearest = DBL_MAX;
-        if (flood->level[cell] < level) continue;
-        for (int side = 0; side < SM_COLLIDE_FACES; side++) {
-            int other = rest->across[cell][side];
-            if (other < 0 || flood->level[other] != level - 1) continue;
-            flood->level[cell] = level;
-            for (int i = 0; i < flood->count[other]; i++)
-                offer(flood, cell, flood->face[(long)other * SM_COLLIDE_FACES + i], &nearest);
-        }
-    }
+    flood->level[cell] = level;
+    flood->first[cell] = flood->faces;
+    flood->count[cell] = count;
+    sm_make_room(flood->face, flood->room, flood->faces + count);
+    memcpy(flood->face + flood->faces, list, (size_t)count * sizeof *list);
+    flood->faces += count;
 }
 
+/* Of a cell without outer faces those of the cells across its own. */
+static void flood_inwards(Flood *flood, int cell)
+{
+    double nearest = DBL_MAX;
+    int list[NEAREST], count = 0;
+    for (int side = 0; side < SM_COLLIDE_FACES; side++) {
+        int other = flood->rest->across[cell][side];
+        if (flood->level[other] > 0) continue;
+        for (int i = 0; i < flood->count[other]; i++)
+            count = offer(flood->rest, cell, flood->face[flood->first[other] + i], &nearest, list,
+                          count);
+    }
+    if (count) keep_faces(flood, cell, 1, count, list);
+}
+
+_Static_assert(SM_COLLIDE_LAYERS == 2, "what is below the second layer is not flooded");
 static void flood(const SmCollideRest *rest, Flood *result)
 {
     size_t cells = (size_t)rest->cells;
     *result = (Flood){.rest = rest,
                       .level = sm_alloc(cells, sizeof(int)),
-                      .count = sm_alloc(cells, sizeof(int)),
-                      .face = sm_alloc(cells * SM_COLLIDE_FACES, sizeof(int))};
+                      .first = sm_alloc(cells, sizeof(long)),
+                      .count = sm_alloc(cells, sizeof(int))};
     for (int cell = 0; cell < rest->cells; cell++) {
+        int list[SM_COLLIDE_FACES], count = 0;
         for (int side = 0; side < SM_COLLIDE_FACES; side++)
-            if (rest->across[cell][side] < 0)
-                result->face[(long)cell * SM_COLLIDE_FACES + result->count[cell]++] =
-                    cell * SM_COLLIDE_FACES + side;
-        result->level[cell] = result->count[cell] ? 0 : SM_COLLIDE_LAYERS;
+            if (rest->across[cell][side] < 0) list[count++] = cell * SM_COLLIDE_FACES + side;
+        result->level[cell] = SM_COLLIDE_LAYERS;
+        if (count) keep_faces(result, cell, 0, count, list);
     }
-    for (int level = 1; level < SM_COLLIDE_LAYERS; level++) flood_layer(result, level);
+    for (int cell = 0; cell < rest->cells; cell++)
+        if (result->level[cell] == SM_COLLIDE_LAYERS) flood_inwards(result, cell);
 }
 
 static void keep_cells(const Flood *flood, SmCollideShape *shape)
@@ -120,7 +128,7 @@ static void keep_cells(const Flood *flood, SmCollideShape *shape)
             cell->carrier[c] = rest->carrier[(long)k * rest->carriers + c];
         cell->face = faces;
         for (int i = 0; i < flood->count[k]; i++)
-            face_of(rest, flood->face[(long)k * SM_COLLIDE_FACES + i], &shape->face[faces++]);
+            face_of(rest, flood->face[flood->first[k] + i], &shape->face[faces++]);
         cell->face_end = faces;
         shape->widest = fmax(shape->widest, cell->edge);
         shape->mean += cell->edge / (double)shape->cell_count;
@@ -198,7 +206,7 @@ void sm_collide_shape_build(const SmCollideRest *rest, SmCollideShape *shape)
     *shape = (SmCollideShape){.rest = *rest, .nodes = rest->nodes, .carriers = rest->carriers};
     flood(rest, &depths);
     keep_cells(&depths, shape);
-    sm_free_all(depths.level, depths.count, depths.face);
+    sm_free_all(depths.level, depths.first, depths.count, depths.face);
     keep_nodes(rest, shape);
     keep_surface(shape);
 }

@@ -202,6 +202,40 @@ static long same_contacts(const Body *body, const SmCollideParams *params)
     return at;
 }
 
+/* The middle of a cross has 24 outer faces equally near: depth is measured to whichever is nearest
+ * to a place, however cells are numbered. */
+TEST(depth_is_from_any_of_the_nearest_faces)
+{
+    Body body = {0};
+    SmCollideShape shape;
+    double mass[64];
+    for (int n = 0; n < 64; n++) mass[n] = 1;
+    sm_voxels_init(&body.voxels, 3, 3, 3, 1);
+    for (int n = 0; n < 27; n++)
+        if ((n % 3 == 1) + (n / 3 % 3 == 1) + (n / 9 == 1) >= 2)
+            sm_voxel_set(&body.voxels, n % 3, n / 3 % 3, n / 9);
+    sm_voxels_count(&body.voxels);
+    lsm_lattice_build(&body.voxels, &body.lattice);
+    lsm_outline_build(&body.lattice, mass, &body.outline);
+    sm_collide_shape_build(&body.outline.rest, &shape);
+    const SmCollideCell *middle = shape.cell;
+    while (middle->level == 0) middle++;
+    assert_int_equal(middle->face_end - middle->face, 24);
+    for (int edge = 0; edge < 12; edge++) {
+        double q[3], out[3], depth;
+        for (int k = 0; k < 3; k++) {
+            double off = k == 2 ? 0 : edge >> k & 1 ? 0.4 : -0.4;
+            q[(edge / 4 + k) % 3] = middle->centre[(edge / 4 + k) % 3] + off;
+        }
+        assert_true(sm_collide_depth(&shape, middle, q, 0, &depth, out));
+        assert_true(fabs(depth - 0.1 * sqrt(2)) < 1e-12);
+    }
+    sm_collide_shape_free(&shape);
+    lsm_outline_free(&body.outline);
+    lsm_lattice_free(&body.lattice);
+    sm_voxels_free(&body.voxels);
+}
+
 TEST(test_twin)
 {
     unsigned seed = 5;
