@@ -1,6 +1,5 @@
 #include "burst.h"
 
-#include <gsl/gsl_fit.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,13 +23,12 @@ SmCode bench_burst_create(const BenchScene *scene, int threads, BenchBurst *burs
     burst->seconds = sm_alloc((size_t)steps, sizeof *burst->seconds);
     burst->good = sm_alloc((size_t)steps, sizeof *burst->good);
     burst->cracked = sm_alloc((size_t)steps, sizeof *burst->cracked);
-    burst->cells = sm_alloc((size_t)steps, sizeof *burst->cells);
     return SM_OK;
 }
 
 void bench_burst_free(BenchBurst *burst)
 {
-    sm_free_all(burst->stage, burst->seconds, burst->good, burst->cracked, burst->cells);
+    sm_free_all(burst->stage, burst->seconds, burst->good, burst->cracked);
     *burst = (BenchBurst){.steps = 0};
 }
 
@@ -54,7 +52,7 @@ void bench_burst_round(BenchBurst *burst, BenchPlayback *play)
     char state[BENCH_HASH_TEXT];
     burst->nodes[0] = body->sheet.warp.nodes;
     for (long s = 0; s < burst->steps; s++) {
-        int before = body->breaking->cracked.cracks.now;
+        long before = body->breaking->cracked.cracks.pieces;
         SmLaps laps;
         bench_watch_start(&burst->watch);
         sm_laps_start(&laps);
@@ -62,10 +60,7 @@ void bench_burst_round(BenchBurst *burst, BenchPlayback *play)
         sm_lap(&laps, sm_engine_stages(runner->type)->before);
         bench_playback_advance(play, &laps);
         bench_watch_stop(&burst->watch);
-        const RefCracked *cracked = &body->breaking->cracked;
-        burst->cracked[s] = cracked->cracks.now != before;
-        burst->cells[s][0] = cracked->counts.cells_again;
-        burst->cells[s][1] = cracked->counts.cells;
+        burst->cracked[s] = body->breaking->cracked.cracks.pieces != before;
         keep(burst, s, &laps);
     }
     burst->nodes[1] = body->sheet.warp.nodes;
@@ -91,28 +86,6 @@ static int seconds_of(const BenchBurst *burst, bool cracked, double *seconds)
     return count;
 }
 
-/* Which share of the cells steps with new cracks take again, and how much longer they take for
- * each. */
-static void count_again(const BenchBurst *burst, BenchElasticRow *elastic)
-{
-    size_t steps = (size_t)burst->steps;
-    double *cells = sm_alloc(steps, sizeof *cells), *share = sm_alloc(steps, sizeof *share);
-    double *ms = sm_alloc(steps, sizeof *ms), start, slope, variance[3], squares;
-    int count = seconds_of(burst, true, ms);
-    for (long s = 0, c = 0; s < burst->steps; s++) {
-        if (!burst->cracked[s]) continue;
-        cells[c] = (double)burst->cells[s][0];
-        share[c] = 100 * cells[c] / (double)burst->cells[s][1];
-        c++;
-    }
-    for (int c = 0; c < count; c++) ms[c] *= 1e3;
-    gsl_fit_linear(cells, 1, ms, 1, (size_t)count, &start, &slope, variance, variance + 1,
-                   variance + 2, &squares);
-    elastic->again_percent = count ? bench_quartiles(share, count).median : 0;
-    elastic->cell_ms = isfinite(slope) ? slope : 0;
-    sm_free_all(cells, share, ms);
-}
-
 void bench_burst_row(const BenchBurst *burst, BenchRow *row)
 {
     size_t steps = (size_t)burst->steps;
@@ -129,11 +102,10 @@ void bench_burst_row(const BenchBurst *burst, BenchRow *row)
     row->elastic.end_nodes = burst->nodes[1];
     row->elastic.whole_ms = calm ? 1e3 * bench_quartiles(whole, calm).median : NAN;
     free(whole);
-    count_again(burst, &row->elastic);
     bench_row_times(&burst->watch, row);
     row->instruments_percent = NAN; /* there are no times without them */
     memcpy(row->state_hash, burst->state, sizeof row->state_hash);
-    if (row->busy) row->elastic.whole_ms = row->elastic.cell_ms = NAN;
+    if (row->busy) row->elastic.whole_ms = NAN;
     if (calm == burst->steps) bench_row_invalidate(row, "no step has made a crack");
     if (burst->differs) bench_row_invalidate(row, "the same scene has ended in different states");
 }

@@ -13,7 +13,6 @@ typedef struct {
     double *seconds;             /* [steps] their sums */
     bool *good;                  /* [steps] a round was undisturbed */
     bool *cracked;               /* [steps] made cracks, or let some grow */
-    long (*cells)[2];            /* [steps] that were taken again, of all */
     long nodes[2];               /* at first and in the end */
     char state[BENCH_HASH_TEXT]; /* of the first round's end; empty: there was none yet */
     bool differs;                /* another round has ended otherwise */

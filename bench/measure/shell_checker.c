@@ -34,16 +34,14 @@ static void rest(void *check, BenchPlayback *play, void *worst, BenchRow *row)
     bench_elastic_row_note(worst, row);
 }
 
-/* One that has come apart: its matrices, made again step by step, are those made anew of the same
- * cracks; and what is drawn is closed, unless edges of its mesh have more than two triangles. */
+/* One that has come apart: what is drawn is closed, unless edges of its mesh have more than two
+ * triangles. */
 static void check_broken(BenchGroup *group, BenchElasticFound *found, BenchRow *row)
 {
     RefShellBody *body = ref_shell_body(group->runner.engine);
     SmMeshInfo info = sm_mesh_info(&group->skin.surface), whole = sm_mesh_info(&group->body.mesh);
     bench_shell_check_broken(body, found);
     if (body->broke) bench_row_invalidate(row, "a crack could not be followed");
-    if (!ref_cracked_same_anew(&body->breaking->cracked))
-        bench_row_invalidate(row, "matrices differ from those made anew of the same cracks");
     if (whole.nonmanifold_edges == 0 && info.open_edges + info.nonmanifold_edges > 0)
         bench_row_invalidate(row, "the surface has %ld open edges and %ld of several triangles",
                              info.open_edges, info.nonmanifold_edges);
@@ -95,9 +93,8 @@ void bench_shell_row_explain(FILE *file, const BenchRow *row)
     if (e->whole_ms > 0)
         fprintf(file,
                 "    the time is that of steps that make cracks or let some grow; others: %.3g ms; "
-                "%ld nodes at first, %ld in the end;\n    of the cells they take %.0f%% again "
-                "(median), and %.2g ms longer for each\n",
-                e->whole_ms, e->nodes, e->end_nodes, e->again_percent, e->cell_ms);
+                "%ld nodes at first, %ld in the end\n",
+                e->whole_ms, e->nodes, e->end_nodes);
     fprintf(
         file,
         "    parameters in %.3g s, angles off by %.2g degrees (median); matrices of %ld nodes in "

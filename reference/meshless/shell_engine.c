@@ -224,9 +224,8 @@ static void bind(SmEngine *engine);
 static void follow_cracks(SmEngine *engine)
 {
     RefShellBody *body = &engine->body;
-    ref_foot_renew(&body->breaking->cracked, &body->sheet.warp, body->sheet.leant,
-                   (const double(*)[2])body->map.theta, CONST(engine->rest), &body->skin,
-                   &body->loose);
+    ref_foot_renew(&body->breaking->cracked, &body->sheet.warp, (const double(*)[2])body->map.theta,
+                   CONST(engine->rest), &body->skin, &body->loose);
     ref_shape_free(&engine->shape);
     engine->shape = ref_shape_create(&body->sheet.shell.nodes);
     if (engine->handles.count) bind(engine);

@@ -23,22 +23,6 @@ typedef struct {
     double (*wall)[3]; /* [nodes] sums of phi over the octant's walls */
 } Local;
 
-static bool same_sparse(const RefSparse *one, const RefSparse *other)
-{
-    size_t columns = (size_t)one->columns;
-    if (one->columns != other->columns ||
-        memcmp(one->start, other->start, (columns + 1) * sizeof *one->start) != 0)
-        return false;
-    size_t entries = (size_t)one->start[columns];
-    return memcmp(one->row, other->row, entries * sizeof *one->row) == 0 &&
-           memcmp(one->value, other->value, entries * sizeof *one->value) == 0;
-}
-
-bool ref_matrices_same(const RefMatrices *one, const RefMatrices *other)
-{
-    return same_sparse(&one->mass, &other->mass) && same_sparse(&one->stiffness, &other->stiffness);
-}
-
 void ref_sparse_free(RefSparse *sparse)
 {
     sm_free_all(sparse->start, sparse->row, sparse->value);

@@ -37,9 +37,6 @@ SmCode ref_matrices_build(const RefOctants *tree, const RefNodes *nodes, RefBasi
 void ref_matrices_free(RefMatrices *matrices);
 void ref_sparse_free(RefSparse *sparse);
 
-/* Whether they have the same entries, bit by bit. */
-bool ref_matrices_same(const RefMatrices *one, const RefMatrices *other);
-
 /* SM_USAGE, and a line that says which number is out of range. */
 SmCode ref_material_check(const RefMaterial *material, SmError *error);
 

@@ -27,12 +27,14 @@ static int *merge(int *list, long *held, const int *number, int count)
     return merged;
 }
 
+void ref_pairs_add(RefPairs *pairs, int i, int count, const int *partner)
+{
+    pairs->met[i] = merge(pairs->met[i], pairs->held + i, partner, count);
+}
+
 void ref_pairs_meet(RefPairs *pairs, int count, const int *node)
 {
-    for (int a = 0; a < count; a++) {
-        int i = node[a];
-        pairs->met[i] = merge(pairs->met[i], pairs->held + i, node + a, count - a);
-    }
+    for (int a = 0; a < count; a++) ref_pairs_add(pairs, node[a], count - a, node + a);
 }
 
 void ref_pairs_end(RefPairs *pairs)

@@ -19,6 +19,8 @@ typedef struct {
 RefPairs ref_pairs_begin(long nodes);
 /* `count` nodes, rising, meet. O(their partners). */
 void ref_pairs_meet(RefPairs *pairs, int count, const int *node);
+/* `count` nodes J >= I, rising, are partners of I. O(its partners). */
+void ref_pairs_add(RefPairs *pairs, int i, int count, const int *partner);
 /* All sums are there then, and zero. */
 void ref_pairs_end(RefPairs *pairs);
 void ref_pairs_free(RefPairs *pairs);

@@ -104,14 +104,13 @@ static void evaluate_share(Builder *builder, RefSkinBlock *block, const RefSkinS
         builder->lift[p] = (float)builder->shares.lift[p];
 }
 
-/* Behind all others, with some room for more: a block that changes is likely to change again. */
-static void make_slots(RefSkin *skin, RefSkinBlock *block)
+/* Behind all others. */
+static void make_room(RefSkin *skin, RefSkinBlock *block)
 {
-    block->slots = block->slots ? block->nodes + block->nodes / 4 : block->nodes;
     block->node = skin->nodes;
     block->weight = skin->weights;
-    skin->nodes += block->slots;
-    skin->weights += (long)block->slots * block->room;
+    skin->nodes += block->nodes;
+    skin->weights += (long)block->nodes * block->room;
     sm_make_room(skin->node, skin->node_room, skin->nodes);
     sm_make_room(skin->weight, skin->weight_room, skin->weights);
 }
@@ -134,7 +133,6 @@ static void weigh_block(Builder *builder, RefSkin *skin, RefSkinBlock *block)
     const RefSkinCarrier *carrier = builder->carrier;
     const long *point = skin->order + block->first;
     RefSkinShares *shares = &builder->shares;
-    long before = builder->loose -= block->loose;
     block->nodes = shares->count = 0;
     if (carrier->share)
         carrier->share(carrier->data, block->points, point,
@@ -150,8 +148,7 @@ static void weigh_block(Builder *builder, RefSkin *skin, RefSkinBlock *block)
             p++;
         }
     }
-    block->loose = (int)(builder->loose - before);
-    if (block->nodes > block->slots) make_slots(skin, block);
+    make_room(skin, block);
     fill_weights(builder, skin, block);
 }
 
@@ -164,43 +161,13 @@ static void make_near(RefSkin *skin)
     skin->near = sm_realloc(skin->near, 2 * (size_t)most, sizeof *skin->near);
 }
 
-/* Nodes and weights of blocks one behind the other, and nothing between. */
-static void compact(RefSkin *skin)
-{
-    RefSkin old = *skin;
-    skin->nodes = skin->weights = 0;
-    skin->node = sm_alloc((size_t)old.node_room, sizeof *skin->node);
-    skin->weight = sm_alloc((size_t)old.weight_room, sizeof *skin->weight);
-    for (long b = 0; b < skin->blocks; b++) {
-        RefSkinBlock *block = skin->block + b;
-        long size = (long)block->nodes * block->room;
-        memcpy(skin->node + skin->nodes, old.node + block->node,
-               (size_t)block->nodes * sizeof *skin->node);
-        memcpy(skin->weight + skin->weights, old.weight + block->weight,
-               (size_t)size * sizeof *skin->weight);
-        block->slots = block->nodes;
-        block->node = skin->nodes;
-        block->weight = skin->weights;
-        skin->nodes += block->nodes;
-        skin->weights += size;
-    }
-    free(old.node);
-    free(old.weight);
-}
-
-void ref_skin_renew(const RefSkinCarrier *carrier,
-                    bool (*stale)(const void *data, long cell, int nodes, const int *node),
-                    RefSkin *skin, long *loose)
+void ref_skin_renew(const RefSkinCarrier *carrier, RefSkin *skin, long *loose)
 {
     Builder builder = builder_of(carrier);
-    for (long b = 0; b < skin->blocks; b++) {
-        RefSkinBlock *block = skin->block + b;
-        if (stale(carrier->data, block->cell, block->nodes, skin->node + block->node))
-            weigh_block(&builder, skin, block);
-    }
-    if (skin->weights * sizeof(float) > 2 * ref_skin_bytes(skin)) compact(skin);
+    skin->nodes = skin->weights = 0;
+    for (long b = 0; b < skin->blocks; b++) weigh_block(&builder, skin, skin->block + b);
     make_near(skin);
-    if (loose) *loose += builder.loose;
+    if (loose) *loose = builder.loose;
     builder_free(&builder);
 }
 
@@ -208,7 +175,6 @@ void ref_skin_build(const RefSkinCarrier *carrier, bool lifted, long count, cons
                     RefSkin *skin, long *loose)
 {
     Keyed *key = sort_points(carrier, count);
-    Builder builder = builder_of(carrier);
     *skin = (RefSkin){.count = count};
     skin->order = sm_alloc((size_t)count, sizeof *skin->order);
     skin->rest = sm_alloc((size_t)count, sizeof *skin->rest);
@@ -220,17 +186,13 @@ void ref_skin_build(const RefSkinCarrier *carrier, bool lifted, long count, cons
     }
     for (long p = 0, end; p < count; p = end) {
         for (end = p + 1; end < count && end - p < BLOCK && key[end].cell == key[p].cell;) end++;
-        RefSkinBlock *block = skin->block + skin->blocks++;
-        *block = (RefSkinBlock){.points = (int)(end - p),
-                                .room = (int)(end - p + LANES - 1) / LANES * LANES,
-                                .first = p,
-                                .cell = key[p].cell};
-        weigh_block(&builder, skin, block);
+        skin->block[skin->blocks++] =
+            (RefSkinBlock){.points = (int)(end - p),
+                           .room = (int)(end - p + LANES - 1) / LANES * LANES,
+                           .first = p};
     }
-    if (loose) *loose = builder.loose;
-    make_near(skin);
-    builder_free(&builder);
     free(key);
+    ref_skin_renew(carrier, skin, loose);
 }
 
 /* Points in a body. */

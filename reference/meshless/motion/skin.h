@@ -16,10 +16,9 @@ enum {
 };
 
 typedef struct {
-    int points, room;         /* room: points rounded up to whole vectors */
-    int nodes, slots, loose;  /* slots: nodes that there is room for; loose: of its points */
+    int points, room; /* room: points rounded up to whole vectors */
+    int nodes;
     long first, node, weight; /* where its points, nodes and weights begin */
-    long cell;                /* its carrier's */
 } RefSkinBlock;
 
 typedef struct {
@@ -73,12 +72,8 @@ typedef struct {
 void ref_skin_build(const RefSkinCarrier *carrier, bool lifted, long count, const double (*x)[3],
                     RefSkin *skin, long *loose);
 
-/* Blocks that `stale` says so of are weighed again, where they are if they have room. What others
- * had before is lost until it is more than what is in use; then all moves together. `loose` (may be
- * NULL) changes with them. */
-void ref_skin_renew(const RefSkinCarrier *carrier,
-                    bool (*stale)(const void *data, long cell, int nodes, const int *node),
-                    RefSkin *skin, long *loose);
+/* Weighs all points again, in the same blocks. `loose` as below. */
+void ref_skin_renew(const RefSkinCarrier *carrier, RefSkin *skin, long *loose);
 
 /* Points that too few nodes cover move with the node nearest to them, if there is one on their side
  * of cracks with that; `loose` (may be NULL) receives how many there are: none of those that

@@ -1,6 +1,6 @@
 /* breaking.h - a shell that moves and breaks: after every step cracks begin and go on by its
- * stresses (fracture.h), what is near them is made again (cracked.h), and the motion goes on with
- * the new functions (sheet.h). */
+ * stresses (fracture.h), functions and matrices are made anew (cracked.h), and the motion goes on
+ * with the new functions (sheet.h). */
 #ifndef REF_BREAKING_H
 #define REF_BREAKING_H
 

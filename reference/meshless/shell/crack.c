@@ -37,10 +37,21 @@ void ref_cracks_create(const RefChart *chart, double margin, RefCracks *cracks)
 void ref_cracks_free(RefCracks *cracks)
 {
     ref_chart_images_free(&cracks->images);
-    sm_free_all(cracks->bin, cracks->binned, cracks->near.piece, cracks->near.box,
-                cracks->stirred.piece, cracks->stirred.box, cracks->mark, cracks->piece,
-                cracks->arm, cracks->settled);
+    sm_free_all(cracks->bin, cracks->binned, cracks->near.piece, cracks->near.box, cracks->mark,
+                cracks->piece, cracks->arm);
     *cracks = (RefCracks){.chart = NULL};
+}
+
+RefCracks ref_cracks_copy(const RefCracks *cracks)
+{
+    size_t pieces = (size_t)cracks->pieces, arms = (size_t)cracks->arms;
+    RefCracks copy;
+    ref_cracks_create(cracks->chart, cracks->margin, &copy);
+    copy.pieces = copy.piece_room = cracks->pieces;
+    copy.arms = copy.arm_room = cracks->arms;
+    copy.piece = sm_copy(cracks->piece, pieces, sizeof *copy.piece);
+    copy.arm = sm_copy(cracks->arm, arms, sizeof *copy.arm);
+    return copy;
 }
 
 int ref_cracks_start(RefCracks *cracks, const double at[2], int parent)
@@ -63,12 +74,7 @@ static void box_of(const RefCrackPiece *piece, double low[2], double high[2])
 static void add_piece(RefCracks *cracks, int arm, const RefChartImage *at)
 {
     RefCrackArm *of = cracks->arm + arm;
-    RefCrackPiece piece = {.at = *at,
-                           .before = INFINITY,
-                           .arm = arm,
-                           .previous = of->last,
-                           .born = cracks->now,
-                           .changed = cracks->now};
+    RefCrackPiece piece = {.at = *at, .arm = arm, .previous = of->last};
     of->last = (int)cracks->pieces;
     cracks->stale = true;
     sm_make_room(cracks->piece, cracks->piece_room, cracks->pieces + 1);
@@ -208,12 +214,8 @@ static const RefCracksNear *near_to(const RefCracks *cracks, const double a[2], 
 /* Moves the tip on: what is ahead of the arm's pieces grows by `more`. */
 static void lengthen(RefCracks *cracks, int arm, double more)
 {
-    double seen = TIP_REACH * cracks->margin;
-    for (int p = cracks->arm[arm].last; p >= 0; p = cracks->piece[p].previous) {
-        RefCrackPiece *piece = cracks->piece + p;
-        if (piece->ahead < seen) piece->changed = cracks->now;
-        piece->ahead += more;
-    }
+    for (int p = cracks->arm[arm].last; p >= 0; p = cracks->piece[p].previous)
+        cracks->piece[p].ahead += more;
 }
 
 void ref_cracks_end(RefCracks *cracks, int arm)
@@ -338,10 +340,10 @@ static bool crosses(const RefCracks *cracks, const RefCrackPiece *piece, int pla
     return turn != 0 && leads(cracks, piece, x, from, sides[1] / turn);
 }
 
-/* What gets past a piece, which the way crosses, `ahead` of which the tip is; false: nothing. The
- * crossing is at the share t = N / D of the piece, N and D linear in x. */
-static bool pass_piece(const RefCrackPiece *piece, double ahead, const double x[2],
-                       const double from[2], double width, double part[6])
+/* What gets past a piece, which the way crosses; false: nothing. The crossing is at the share
+ * t = N / D of the piece, N and D linear in x. */
+static bool pass_piece(const RefCrackPiece *piece, const double x[2], const double from[2],
+                       double width, double part[6])
 {
     double along[2], way[2], start[2], slope[2], t_k[2];
     way_from(piece->at.end[0], piece->at.end[1], along);
@@ -349,7 +351,7 @@ static bool pass_piece(const RefCrackPiece *piece, double ahead, const double x[
     way_from(piece->at.end[0], from, start);
     double length = length_of(along), D = cross(along, way);
     double t = fmin(fmax(cross(start, way) / D, 0), 1);
-    double s = (length * (1 - t) + ahead) / width, scale = -length / width;
+    double s = (length * (1 - t) + piece->ahead) / width, scale = -length / width;
     if (!(s < 1)) return false;
     const double N_k[2] = {-start[1], start[0]}, D_k[2] = {-along[1], along[0]};
     for (int k = 0; k < 2; k++) t_k[k] = (N_k[k] - t * D_k[k]) / D;
@@ -365,33 +367,21 @@ static bool pass_piece(const RefCrackPiece *piece, double ahead, const double x[
 
 static const double whole[6] = {1};
 
-static bool pass(const RefCracks *cracks, bool earlier, const double x[3], const double from[3],
-                 double reach, double part[6])
+bool ref_cracks_pass(const void *data, const double x[3], const double from[3], double reach,
+                     double part[6])
 {
+    const RefCracks *cracks = data;
     const RefCracksNear *near = near_to(cracks, x, from);
     int plane = ref_chart_plane(cracks->chart, x);
     memcpy(part, whole, sizeof whole);
     for (long n = 0; n < near->count; n++) {
         const RefCrackPiece *piece = cracks->piece + near->piece[n];
-        double f[6], ahead = earlier ? piece->before : piece->ahead;
-        if (earlier && piece->born == cracks->now) continue;
+        double f[6];
         if (!crosses(cracks, piece, plane, x, from)) continue;
-        if (!pass_piece(piece, ahead, x, from, TIP_REACH * reach, f)) return false;
+        if (!pass_piece(piece, x, from, TIP_REACH * reach, f)) return false;
         ref_mls_multiply(f, part);
     }
     return true;
-}
-
-bool ref_cracks_pass(const void *cracks, const double x[3], const double from[3], double reach,
-                     double part[6])
-{
-    return pass(cracks, false, x, from, reach, part);
-}
-
-bool ref_cracks_passed(const void *cracks, const double x[3], const double from[3], double reach,
-                       double part[6])
-{
-    return pass(cracks, true, x, from, reach, part);
 }
 
 /* The box of a grid and the place that it is seen from. */
@@ -515,8 +505,7 @@ static bool in_the_way(Fan *fan, const RefCrackPiece *piece)
 }
 
 /* What is left of the parts at places of a grid that a piece takes from; false: nothing. */
-static bool take_from(const Fan *fan, const RefCrackPiece *piece, double ahead, double width,
-                      double (*part)[6])
+static bool take_from(const Fan *fan, const RefCrackPiece *piece, double width, double (*part)[6])
 {
     const RefGrid *grid = fan->grid;
     const unsigned char *crossing = fan->crossing;
@@ -526,7 +515,7 @@ static bool take_from(const Fan *fan, const RefCrackPiece *piece, double ahead, 
             const double x[2] = {grid->at[0][i], grid->at[1][j]};
             double f[6];
             if (*crossing && part[0][0] != 0) {
-                if (ahead < width && pass_piece(piece, ahead, x, fan->from, width, f))
+                if (piece->ahead < width && pass_piece(piece, x, fan->from, width, f))
                     ref_mls_multiply(f, *part);
                 else
                     memset(*part, 0, sizeof *part);
@@ -536,8 +525,8 @@ static bool take_from(const Fan *fan, const RefCrackPiece *piece, double ahead, 
     return left;
 }
 
-bool ref_cracks_fan(const RefCracks *cracks, bool earlier, const RefGrid *grid,
-                    const double from[2], double reach, double (*part)[6])
+bool ref_cracks_fan(const RefCracks *cracks, const RefGrid *grid, const double from[2],
+                    double reach, double (*part)[6])
 {
     Fan fan = fan_of(cracks, grid, from);
     int places = grid->count[0] * grid->count[1];
@@ -545,37 +534,12 @@ bool ref_cracks_fan(const RefCracks *cracks, bool earlier, const RefGrid *grid,
     const RefCracksNear *near = near_to(cracks, fan.low, fan.high);
     const RefCrackPiece *piece;
     for (long n = 0; left && (piece = next_piece(&fan, near, &n));) {
-        double ahead = earlier ? piece->before : piece->ahead;
-        if ((earlier && piece->born == cracks->now) || !in_the_way(&fan, piece)) continue;
+        if (!in_the_way(&fan, piece)) continue;
         for (int p = 0; !any && p < places; p++) memcpy(part[p], whole, sizeof whole);
         any = true;
-        left = take_from(&fan, piece, ahead, TIP_REACH * reach, part);
+        left = take_from(&fan, piece, TIP_REACH * reach, part);
     }
     return any;
-}
-
-bool ref_cracks_stir(const RefCracks *cracks, const double low[2], const double high[2])
-{
-    const double middle[2] = {(low[0] + high[0]) / 2, (low[1] + high[1]) / 2};
-    int plane = ref_chart_plane(cracks->chart, middle);
-    RefCracksNear *stirred = &((RefCracks *)cracks)->stirred;
-    stirred->count = 0;
-    for (long p = 0; p < cracks->pieces; p++)
-        if (cracks->piece[p].changed == cracks->now && cracks->piece[p].at.plane == plane)
-            note(cracks, (int)p, low, high, stirred);
-    return stirred->count > 0;
-}
-
-bool ref_cracks_fan_changed(const RefCracks *cracks, const RefGrid *grid, const double from[2],
-                            double reach)
-{
-    Fan fan = fan_of(cracks, grid, from);
-    const RefCrackPiece *piece;
-    for (long n = 0; (piece = next_piece(&fan, &cracks->stirred, &n));)
-        if ((piece->born == cracks->now || piece->before < TIP_REACH * reach) &&
-            in_the_way(&fan, piece))
-            return true;
-    return false;
 }
 
 bool ref_cracks_part(const RefCracks *cracks, const double x[2], const double from[2])
@@ -594,35 +558,6 @@ bool ref_cracks_end_ahead(const RefCracks *cracks, int arm, double far)
     double to[2] = {of->tip[0] + way[0], of->tip[1] + way[1]}, share = 1;
     if (first_meeting(cracks, of->tip, to, &share)) return true;
     return !ref_chart_walk(cracks->chart, end, way);
-}
-
-void ref_cracks_settle(RefCracks *cracks)
-{
-    cracks->now++;
-    for (long p = 0; p < cracks->pieces; p++) cracks->piece[p].before = cracks->piece[p].ahead;
-    cracks->settled_pieces = cracks->pieces;
-    cracks->settled_arms = cracks->arms;
-    sm_make_room(cracks->settled, cracks->settled_room, cracks->arms);
-    if (cracks->arms)
-        memcpy(cracks->settled, cracks->arm, (size_t)cracks->arms * sizeof *cracks->arm);
-}
-
-RefCracks ref_cracks_settled(const RefCracks *cracks)
-{
-    RefCracks copy;
-    size_t pieces = (size_t)cracks->settled_pieces, arms = (size_t)cracks->settled_arms;
-    ref_cracks_create(cracks->chart, cracks->margin, &copy);
-    copy.pieces = copy.piece_room = cracks->settled_pieces;
-    copy.arms = copy.arm_room = cracks->settled_arms;
-    copy.piece = sm_alloc(pieces, sizeof *copy.piece);
-    copy.arm = sm_alloc(arms, sizeof *copy.arm);
-    if (pieces) memcpy(copy.piece, cracks->piece, pieces * sizeof *copy.piece);
-    if (arms) memcpy(copy.arm, cracks->settled, arms * sizeof *copy.arm);
-    for (size_t p = 0; p < pieces; p++) copy.piece[p].ahead = copy.piece[p].before;
-    copy.stale = true;
-    copy.now = cracks->now;
-    ref_cracks_settle(&copy);
-    return copy;
 }
 
 double ref_cracks_distance(const RefCracks *cracks, const double x[2], double far)

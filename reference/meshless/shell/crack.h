@@ -21,9 +21,7 @@
 typedef struct {
     RefChartImage at;  /* its second end is nearer to the tip */
     double ahead;      /* length of the arm from there to the tip; infinite where there is no tip */
-    double before;     /* the same before the changes that are not settled yet */
     int arm, previous; /* the piece of the arm that was made before this one, or -1 */
-    int born, changed; /* RefCracks.now at its making and its last change that may be seen */
 } RefCrackPiece;
 
 typedef struct {
@@ -46,16 +44,12 @@ typedef struct {
     const RefChart *chart; /* the caller's */
     double margin;         /* the largest reach of a cover */
     long pieces, piece_room, arms, arm_room;
-    RefCrackPiece *piece; /* [pieces] */
-    RefCrackArm *arm;     /* [arms] */
-    int now;              /* counts settlements */
-    long settled_pieces, settled_arms, settled_room;
-    RefCrackArm *settled;   /* [settled_arms] the arms at the last one */
+    RefCrackPiece *piece;   /* [pieces] */
+    RefCrackArm *arm;       /* [arms] */
     bool stale;             /* private, as is the rest: pieces are not in these bins yet */
     int *bin, *binned;      /* where each bin's pieces begin, and their numbers */
     double low[2], high[2]; /* a box, and */
     RefCracksNear near;     /* all pieces whose boxes touch it */
-    RefCracksNear stirred;  /* those of another box that have changed */
     uint64_t *mark;         /* [pieces / 64] bits of those that are gathered; none in between */
     long bin_room, mark_room;
     RefChartImages images;
@@ -71,6 +65,8 @@ enum { REF_GRID_SIDE = 6 };
 
 /* No cracks. No cover's reach is above `margin`. The caller frees. */
 void ref_cracks_create(const RefChart *chart, double margin, RefCracks *cracks);
+/* The caller frees. O(pieces). */
+RefCracks ref_cracks_copy(const RefCracks *cracks);
 void ref_cracks_free(RefCracks *cracks);
 
 /* A new arm without a piece, from a place of the rectangle; returns its number. `parent` is an arm
@@ -93,10 +89,6 @@ void ref_cracks_end(RefCracks *cracks, int arm);
 bool ref_cracks_pass(const void *cracks, const double x[3], const double from[3], double reach,
                      double part[6]);
 
-/* The same before the changes that are not settled yet. */
-bool ref_cracks_passed(const void *cracks, const double x[3], const double from[3], double reach,
-                       double part[6]);
-
 /* Whether a crack is between two places, the first in a rectangle and the second in its plane. */
 bool ref_cracks_part(const RefCracks *cracks, const double x[2], const double from[2]);
 
@@ -104,25 +96,11 @@ bool ref_cracks_part(const RefCracks *cracks, const double x[2], const double fr
  * doing so; whether there are any. */
 bool ref_cracks_look(const RefCracks *cracks, const double low[2], const double high[2]);
 
-/* What gets from `from` to the places of a grid, as ref_cracks_pass() has it, or
- * ref_cracks_passed(), `earlier`, with zeros where nothing does: part[grid->count[0] j + i]. False,
- * and nothing written, where no crack is in the way. */
-bool ref_cracks_fan(const RefCracks *cracks, bool earlier, const RefGrid *grid,
-                    const double from[2], double reach, double (*part)[6]);
-
-/* Looks up the pieces, and images of some, that have changes which are not settled and whose boxes
- * touch a box about a place of a rectangle; whether there are any. O(pieces). */
-bool ref_cracks_stir(const RefCracks *cracks, const double low[2], const double high[2]);
-
-/* Whether those change what gets to any place of a grid, all ways to which are in that box. */
-bool ref_cracks_fan_changed(const RefCracks *cracks, const RefGrid *grid, const double from[2],
-                            double reach);
-
-/* All changes become what was before. O(pieces). */
-void ref_cracks_settle(RefCracks *cracks);
-
-/* The cracks without the changes that are not settled yet. The caller frees. O(pieces). */
-RefCracks ref_cracks_settled(const RefCracks *cracks);
+/* What gets from `from` to the places of a grid, as ref_cracks_pass() has it, with zeros where
+ * nothing does: part[grid->count[0] j + i]. False, and nothing written, where no crack is in the
+ * way. */
+bool ref_cracks_fan(const RefCracks *cracks, const RefGrid *grid, const double from[2],
+                    double reach, double (*part)[6]);
 
 /* How far the nearest piece is, at most `far`. */
 double ref_cracks_distance(const RefCracks *cracks, const double x[2], double far);

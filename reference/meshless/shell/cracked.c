@@ -27,7 +27,6 @@ static void forget_cell(RefCrackedCell *cell)
 {
     ref_samples_free(&cell->samples);
     ref_element_free(&cell->element);
-    cell->made = false;
 }
 
 void ref_cracked_free(RefCracked *cracked)
@@ -40,10 +39,10 @@ void ref_cracked_free(RefCracked *cracked)
         free(cracked->shell->up);
         cracked->shell->up = NULL;
     }
-    ref_element_rows_free(&cracked->rows);
     ref_cracks_free(&cracked->cracks);
+    ref_cracks_free(&cracked->cracks_before);
     ref_nodes_free(&cracked->whole);
-    sm_free_all(cracked->cell, cracked->whole_X, cracked->whole_above);
+    sm_free_all(cracked->cell, cracked->seen, cracked->whole_X, cracked->whole_above);
     *cracked = (RefCracked){.shell = NULL};
 }
 
@@ -96,12 +95,9 @@ static RefFrame whole_at(const RefCracked *cracked, const double theta[3], RefSh
     return frame;
 }
 
-/* The samples of a cell; its areas are those of the whole shell. */
-static void take_samples(const RefCracked *cracked, long c, RefSamplesWork *take, RefShape *whole,
-                         RefSamples *samples)
+/* The areas of a cell's samples are those of the whole shell. */
+static void find_areas(const RefCracked *cracked, RefShape *whole, RefSamples *samples)
 {
-    const RefShell *shell = cracked->shell;
-    ref_samples_of(&shell->tree, c, edge_of(cracked, c), take, samples);
     for (long p = 0; p < samples->count; p++) {
         double area = whole_at(cracked, samples->theta[p], whole).area;
         samples->trace[p] = 2 / area; /* as if the map were conformal: see cracked.h */
@@ -123,33 +119,43 @@ static uint64_t find_bearing(const RefSamples *samples)
     return bears;
 }
 
-static void integrate(RefCracked *cracked, RefCrackedCell *cell, RefThinWork *work)
+/* A node that no sample sees gets means of the others' mass and stiffness, so that it is no
+ * singularity. */
+static void bear_unseen(RefCracked *cracked, RefPairs *pairs)
 {
-    ref_middle_frames((const double(*)[3])cracked->shell->X, &cell->samples);
-    cell->bears = find_bearing(&cell->samples);
-    cell->soft = ref_thin_element(&cell->samples, 0, cracked->options.thickness,
-                                  &cracked->options.material, work, &cell->element);
-    cell->made = true;
+    double mass = 0, stiffness = 0;
+    cracked->seen = sm_realloc(cracked->seen, (size_t)pairs->count, sizeof *cracked->seen);
+    for (long n = 0; n < pairs->count; n++) {
+        mass += pairs->mass[pairs->start[n]] / (double)pairs->count;
+        stiffness += pairs->block[pairs->start[n]][0] / (double)pairs->count;
+    }
+    for (long n = 0; n < pairs->count; n++) {
+        long at = pairs->start[n];
+        cracked->seen[n] = pairs->mass[at] > 0;
+        if (cracked->seen[n]) continue;
+        pairs->mass[at] = mass;
+        for (int d = 0; d < 3; d++) pairs->block[at][4 * d] += stiffness;
+    }
 }
 
-/* Rows of touched nodes, and the matrices. */
-static void add_up(RefCracked *cracked, const unsigned char *touched)
+static void add_up(RefCracked *cracked)
 {
     RefShell *shell = cracked->shell;
-    long cells = shell->tree.count;
-    const RefElement **element = sm_alloc((size_t)cells, sizeof(RefElement *));
-    for (long c = 0; c < cells; c++)
-        element[c] = cracked->cell[c].made ? &cracked->cell[c].element : NULL;
-    ref_element_rows_sum(&cracked->rows, shell->nodes.count, touched, cells, element);
-    free(element);
+    RefPairs pairs = ref_pairs_begin(shell->nodes.count);
+    for (int n = 0; n < (int)pairs.count; n++) ref_pairs_add(&pairs, n, 1, &n);
+    for (long c = 0; c < shell->tree.count; c++)
+        ref_element_meet(&cracked->cell[c].element, &pairs);
+    ref_pairs_end(&pairs);
+    for (long c = 0; c < shell->tree.count; c++) ref_element_add(&cracked->cell[c].element, &pairs);
+    bear_unseen(cracked, &pairs);
     ref_matrices_free(&shell->matrices);
-    ref_element_rows_matrices(&cracked->rows, cracked->options.material.density, &shell->matrices);
+    ref_pairs_matrices(&pairs, cracked->options.material.density, &shell->matrices);
+    ref_pairs_free(&pairs);
 }
 
 static void count_all(RefCracked *cracked)
 {
     RefCrackedCounts *counts = &cracked->counts;
-    counts->cells = cracked->shell->tree.leaves;
     counts->blind = counts->soft = 0;
     for (long c = 0; c < cracked->shell->tree.count; c++) {
         const RefSamples *samples = &cracked->cell[c].samples;
@@ -222,7 +228,7 @@ bool ref_cracked_side(const RefCracked *cracked, const double theta[2], const do
 
 bool ref_cracked_seen(const RefCracked *cracked, long node)
 {
-    return cracked->rows.row[node].sum[0][0] > 0;
+    return cracked->seen[node];
 }
 
 int ref_cracked_node(const RefCracked *cracked, const double theta[2])
@@ -240,45 +246,45 @@ void ref_cracked_press(const RefCracked *cracked, double pressure, double (*forc
         ref_middle_press(&cracked->cell[c].samples, pressure, force);
 }
 
-bool ref_cracked_again(const RefCracked *cracked, long cell)
-{
-    int child = cracked->shell->tree.cell[cell].child;
-    if (child < 0) return cracked->cell[cell].again;
-    for (int k = 0; k < 4; k++)
-        if (ref_cracked_again(cracked, child + k)) return true;
-    return false;
-}
-
-void ref_cracked_remake(RefCracked *cracked)
+/* Takes all samples and sums them up. Cells that `old` (or NULL) has samples of keep their areas.
+ */
+static void make_all(RefCracked *cracked, const RefSamples *old)
 {
     RefShell *shell = cracked->shell;
-    RefSamplesWork take = ref_samples_work(&shell->nodes, shell->basis, &cracked->cracks, false);
+    RefSamplesWork take = ref_samples_work(&shell->nodes, shell->basis, &cracked->cracks);
     RefShape whole = ref_shape_create(&cracked->whole);
     RefThinWork work = ref_thin_work(shell->nodes.count);
-    unsigned char *touched = sm_alloc((size_t)shell->nodes.count, 1);
-    memset(touched, 1, (size_t)shell->nodes.count);
     for (long c = 0; c < shell->tree.count; c++) {
-        forget_cell(cracked->cell + c);
-        if (!terminal(cracked, c)) continue;
-        take_samples(cracked, c, &take, &whole, &cracked->cell[c].samples);
-        integrate(cracked, cracked->cell + c, &work);
+        RefCrackedCell *cell = cracked->cell + c;
+        RefSamples *samples = &cell->samples;
+        if (!terminal(cracked, c)) {
+            forget_cell(cell);
+            cell->nodes = 0;
+            continue;
+        }
+        ref_samples_of(&shell->tree, c, edge_of(cracked, c), &take, samples);
+        if (old && old[c].count) {
+            memcpy(samples->area, old[c].area, REF_SAMPLES_PER_CELL * sizeof *samples->area);
+            memcpy(samples->trace, old[c].trace, REF_SAMPLES_PER_CELL * sizeof *samples->trace);
+        } else
+            find_areas(cracked, &whole, samples);
+        ref_middle_frames((const double(*)[3])shell->X, samples);
+        cell->bears = find_bearing(samples);
+        cell->soft = ref_thin_element(samples, 0, cracked->options.thickness,
+                                      &cracked->options.material, &work, &cell->element);
     }
-    add_up(cracked, touched);
+    add_up(cracked);
     count_all(cracked);
     ref_thin_work_free(&work);
     ref_samples_work_free(&take);
     ref_shape_free(&whole);
-    free(touched);
 }
 
-bool ref_cracked_same_anew(RefCracked *cracked)
+/* The cracks become those of the functions. */
+static void settle(RefCracked *cracked)
 {
-    RefMatrices *matrices = &cracked->shell->matrices, updated = *matrices;
-    *matrices = (RefMatrices){.lumped = false};
-    ref_cracked_remake(cracked);
-    bool same = ref_matrices_same(&updated, matrices);
-    ref_matrices_free(&updated);
-    return same;
+    ref_cracks_free(&cracked->cracks_before);
+    cracked->cracks_before = ref_cracks_copy(&cracked->cracks);
 }
 
 void ref_cracked_create(RefShell *shell, const RefShellOptions *options,
@@ -296,7 +302,8 @@ void ref_cracked_create(RefShell *shell, const RefShellOptions *options,
     number_nodes(cracked);
     find_above(cracked);
     shell->nodes.cut = (RefCut){ref_cracks_pass, &cracked->cracks};
-    ref_cracked_remake(cracked);
+    make_all(cracked, NULL);
+    settle(cracked);
     shell->functions = (RefShellFunctions){functions_at, samples_of, cracked};
 }
 
@@ -368,7 +375,7 @@ static long split_cells(RefCracked *cracked)
             low[d] = middle[d] - reach;
             high[d] = middle[d] + reach;
         }
-        if (c < before && !ref_cracks_stir(&cracked->cracks, low, high)) continue;
+        if (!ref_cracks_look(&cracked->cracks, low, high)) continue;
         if (has_zero(&cracked->shell->chart, low, high)) continue;
         if (share_of(cracked, c) >= cracked->cracked.least_share) continue;
         if (ref_quadtree_split(tree, c)) inherit(cracked, count);
@@ -442,124 +449,6 @@ static void fill_nodes(RefCracked *cracked, const unsigned char *fresh, RefField
     ref_shape_free(&whole);
 }
 
-/* New nodes and their images, which may have taken the numbers of nodes that are gone. */
-typedef struct {
-    const unsigned char *is; /* [nodes] */
-    long count;
-    long *place; /* [count] among the nodes' positions */
-} Fresh;
-
-static Fresh list_fresh(const RefNodes *nodes, const unsigned char *is)
-{
-    Fresh fresh = {.is = is};
-    long all = nodes->count + nodes->images;
-    fresh.place = sm_alloc((size_t)all, sizeof *fresh.place);
-    for (long n = 0; n < all; n++)
-        if (is[nodes->owner ? nodes->owner[n] : n]) fresh.place[fresh.count++] = n;
-    return fresh;
-}
-
-/* The samples of a cell, and the box of all that is within a cover's reach of them. */
-typedef struct {
-    double at[2][REF_GRID_SIDE], low[2], high[2];
-    int plane;
-} Surroundings;
-
-static Surroundings surroundings_of(const RefCracked *cracked, long c)
-{
-    Surroundings near;
-    double margin = cracked->cracks.margin;
-    ref_samples_grid(&cracked->shell->tree, c, near.at);
-    for (int d = 0; d < 2; d++) {
-        near.low[d] = near.at[d][0] - margin;
-        near.high[d] = near.at[d][REF_GRID_SIDE - 1] + margin;
-    }
-    const double corner[2] = {near.at[0][0], near.at[1][0]};
-    near.plane = ref_chart_plane(cracked->cracks.chart, corner);
-    return near;
-}
-
-/* Which of the samples the cover of a node, or image of one, reaches; false: none. */
-static bool reached_by(const RefNodes *nodes, long n, const Surroundings *near, double margin,
-                       RefGrid *grid)
-{
-    const double *node = nodes->position[n], reach = nodes->reach[n], more = margin - reach;
-    int first[2];
-    return (!nodes->cylinders || nodes->home[n] == near->plane) && node[0] - near->low[0] > more &&
-           near->high[0] - node[0] > more && node[1] - near->low[1] > more &&
-           near->high[1] - node[1] > more &&
-           ref_samples_reached((const double(*)[REF_GRID_SIDE])near->at, node, reach, first, grid);
-}
-
-/* Whether samples of a cell have other functions than before. */
-static bool is_stale(const RefCracked *cracked, long c, const Fresh *fresh)
-{
-    const RefNodes *nodes = &cracked->shell->nodes;
-    const RefElement *element = &cracked->cell[c].element;
-    const RefCracks *cracks = &cracked->cracks;
-    const Surroundings near = surroundings_of(cracked, c);
-    RefGrid grid;
-    for (int n = 0; n < element->count; n++)
-        if (fresh->is[element->node[n]]) return true;
-    for (long n = 0; n < fresh->count; n++)
-        if (reached_by(nodes, fresh->place[n], &near, cracks->margin, &grid)) return true;
-    if (!ref_cracks_stir(cracks, near.low, near.high)) return false;
-    for (long n = 0; n < nodes->count + nodes->images; n++)
-        if (reached_by(nodes, n, &near, cracks->margin, &grid) &&
-            ref_cracks_fan_changed(cracks, &grid, nodes->position[n], nodes->reach[n]))
-            return true;
-    return false;
-}
-
-static void touch(const RefElement *element, unsigned char *touched)
-{
-    for (int n = 0; n < element->count; n++) touched[element->node[n]] = 1;
-}
-
-/* Takes again what is not what it was; marks nodes whose rows change. Samples that there were are
- * kept in `before`. */
-static void remake_stale(RefCracked *cracked, const unsigned char *is_fresh, unsigned char *touched,
-                         RefFieldsBefore *before)
-{
-    RefShell *shell = cracked->shell;
-    Fresh fresh = list_fresh(&shell->nodes, is_fresh);
-    RefSamplesWork take = ref_samples_work(&shell->nodes, shell->basis, &cracked->cracks, false);
-    RefShape whole = ref_shape_create(&cracked->whole);
-    RefThinWork work = ref_thin_work(shell->nodes.count);
-    before->cells = shell->tree.count;
-    before->samples = sm_alloc((size_t)before->cells, sizeof *before->samples);
-    for (long c = 0; c < shell->tree.count; c++) {
-        RefCrackedCell *cell = cracked->cell + c;
-        const RefSamples *old = before->samples + c;
-        bool was = cell->made;
-        cell->again = false;
-        if (was && terminal(cracked, c) && !is_stale(cracked, c, &fresh)) continue;
-        touch(&cell->element, touched);
-        before->samples[c] = cell->samples;
-        cell->samples = (RefSamples){.count = 0};
-        cell->made = false;
-        cell->again = true;
-        if (!terminal(cracked, c)) {
-            ref_element_free(&cell->element);
-            cell->nodes = 0;
-            continue;
-        }
-        if (was) {
-            ref_samples_of(&shell->tree, c, edge_of(cracked, c), &take, &cell->samples);
-            memcpy(cell->samples.area, old->area, REF_SAMPLES_PER_CELL * sizeof *old->area);
-            memcpy(cell->samples.trace, old->trace, REF_SAMPLES_PER_CELL * sizeof *old->trace);
-        } else
-            take_samples(cracked, c, &take, &whole, &cell->samples);
-        integrate(cracked, cell, &work);
-        touch(&cell->element, touched);
-        cracked->counts.cells_again++;
-    }
-    ref_thin_work_free(&work);
-    ref_samples_work_free(&take);
-    ref_shape_free(&whole);
-    free(fresh.place);
-}
-
 /* Room for new nodes; residuals are zero. */
 static void widen_fields(long before, long nodes, const RefCrackedFields *fields)
 {
@@ -579,19 +468,17 @@ void ref_cracked_update(RefCracked *cracked, const RefCrackedFields *fields)
     RefFieldsBefore before = ref_fields_before(cracked, fields);
     cracked->counts = (RefCrackedCounts){.split = split_cells(cracked)};
     unsigned char *fresh = move_nodes(cracked);
-    unsigned char *touched = sm_copy(fresh, (size_t)shell->nodes.count, 1);
     if (fields) widen_fields(before.nodes.count, shell->nodes.count, fields);
     fill_nodes(cracked, fresh, &before, fields);
-    remake_stale(cracked, fresh, touched, &before);
+    ref_fields_take_samples(cracked, &before);
+    make_all(cracked, before.samples);
     if (fields) ref_fields_residuals(cracked, &before, fields);
-    add_up(cracked, touched);
-    count_all(cracked);
     for (long n = 0; n < shell->nodes.count; n++) /* nodes that nothing sees are at rest */
         for (int f = 0; fields && f < fields->count && !ref_cracked_seen(cracked, n); f++)
             memset(fields->field[f] + 3 * n, 0, sizeof(double[3]));
-    ref_cracks_settle(&cracked->cracks);
+    settle(cracked);
     ref_fields_before_free(&before);
-    sm_free_all(fresh, touched);
+    free(fresh);
 }
 
 RefCrackedSaved ref_cracked_save(const RefCracked *cracked)
@@ -606,7 +493,7 @@ RefCrackedSaved ref_cracked_save(const RefCracked *cracked)
                              .X = sm_copy(shell->X, (size_t)shell->nodes.count, sizeof *shell->X),
                              .up =
                                  sm_copy(shell->up, (size_t)shell->nodes.count, sizeof *shell->up),
-                             .cracks = ref_cracks_settled(&cracked->cracks)};
+                             .cracks = ref_cracks_copy(&cracked->cracks_before)};
     for (size_t c = 0; c < cells; c++) {
         saved.cell[c].samples = (RefSamples){.count = 0};
         saved.cell[c].element = (RefElement){.count = 0};
@@ -637,8 +524,8 @@ void ref_cracked_restore(RefCracked *cracked, RefCrackedSaved *saved)
     shell->up = saved->up;
     ref_cracks_free(&cracked->cracks);
     cracked->cracks = saved->cracks;
-    ref_element_rows_free(&cracked->rows);
-    ref_cracked_remake(cracked);
+    make_all(cracked, NULL);
+    settle(cracked);
     sm_free_all(saved->tree, saved->cell);
     *saved = (RefCrackedSaved){.cells = 0};
 }

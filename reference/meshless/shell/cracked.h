@@ -1,12 +1,9 @@
-/* cracked.h - a thin shell with cracks (meshless section 4.2): what is near a crack is made again
- * when the crack changes, and only that.
+/* cracked.h - a thin shell with cracks (meshless section 4.2): when cracks change all functions and
+ * matrices are made anew.
  *
  * Cells whose node gets too little from its own cover are split into four, with a node each, and
  * others to keep the tree balanced; those whose covers reach a zero of a plane of cylinders are
- * not. Then samples whose functions changed are taken again, cell by cell, and sums of pairs whose
- * cells changed are added up again, in the order in which they would be if all was made anew: the
- * matrices have the same bits. What is made depends on where cracks are and not on how they came
- * there.
+ * not. What is made depends on where cracks are and not on how they came there.
  *
  * A sample is stiff where its functions leave the surface what a conformal map would have of it
  * (thin.h): a shell that cracks is soft where its map draws it out more than fourfold, before any
@@ -18,8 +15,8 @@
 #include <stdint.h>
 
 #include "crack.h"
-#include "element_rows.h"
 #include "shell.h"
+#include "thin.h"
 
 typedef struct {
     double least_share; /* of a node's weight, below which its cell is split */
@@ -39,14 +36,10 @@ typedef struct {
                                              that places beside them may have them: these are stiff
                                              and have not much more area than before any crack */
     int soft;                             /* samples without stiffness */
-    bool made;                            /* has samples and an element */
-    bool again;                           /* by the last update */
 } RefCrackedCell;
 
-/* How much there is, and what the last update made again. */
 typedef struct {
-    long cells, cells_again; /* terminal ones; of these by the last update */
-    long split;
+    long split;       /* cells, by the last update */
     long blind, soft; /* of all samples: those that see no node; those without stiffness */
 } RefCrackedCounts;
 
@@ -54,10 +47,10 @@ typedef struct {
     RefShell *shell; /* the caller's; its tree, nodes, X, up and matrices change */
     RefShellOptions options;
     RefCrackedOptions cracked;
-    RefCracks cracks;
-    RefCrackedCell *cell; /* [shell->tree.count] */
+    RefCracks cracks, cracks_before; /* these at the last update */
+    RefCrackedCell *cell;            /* [shell->tree.count] */
     long cell_room;
-    RefElementRows rows;
+    bool *seen; /* [nodes] by samples */
     RefCrackedCounts counts;
     RefNodes whole;           /* nodes of the whole shell, and */
     double (*whole_X)[3];     /* its middle surface */
@@ -78,7 +71,7 @@ typedef struct {
     double **residual; /* [2] of the first two, likewise, or NULL at first */
 } RefCrackedFields;
 
-/* After cracks were grown: makes again what that changes, and settles the cracks. A field's nodes
+/* After cracks were grown: makes all of them anew. A field's nodes
  * keep their parameters, and new ones have what the field was there; what is left of the old field
  * is written to `residual`, so that displacements + K^-1 residual and velocities + M^-1 residual
  * are its projections in the norms of both energies, which are no longer than the field was
@@ -127,14 +120,5 @@ int ref_cracked_node(const RefCracked *cracked, const double theta[2]);
 
 /* ref_middle_press(), on areas that cracks do not change. */
 void ref_cracked_press(const RefCracked *cracked, double pressure, double (*force)[3]);
-
-/* Whether the last update took samples of a cell again, or of one that is part of it. */
-bool ref_cracked_again(const RefCracked *cracked, long cell);
-
-/* The slow twin: makes all again, of the tree and the nodes as they are. */
-void ref_cracked_remake(RefCracked *cracked);
-
-/* The same; whether the matrices that came of updates have the same bits. */
-bool ref_cracked_same_anew(RefCracked *cracked);
 
 #endif

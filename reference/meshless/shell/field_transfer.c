@@ -29,7 +29,7 @@ RefFieldsBefore ref_fields_before(const RefCracked *cracked, const RefCrackedFie
     RefFieldsBefore before = {.nodes = ref_nodes_copy(&shell->nodes),
                               .X = sm_copy(shell->X, nodes, sizeof(double[3])),
                               .fields = fields ? fields->count : 0};
-    before.nodes.cut.pass = ref_cracks_passed;
+    before.nodes.cut.cracks = &cracked->cracks_before;
     before.shape = ref_shape_create(&before.nodes);
     before.part = sm_alloc((size_t)before.nodes.most, sizeof *before.part);
     before.field = sm_alloc((size_t)before.fields, sizeof *before.field);
@@ -144,10 +144,20 @@ static Seen adjusted(const Seen *seen, const Balance *balance)
     return changed;
 }
 
+void ref_fields_take_samples(RefCracked *cracked, RefFieldsBefore *before)
+{
+    before->cells = cracked->shell->tree.count;
+    before->samples = sm_alloc((size_t)before->cells, sizeof *before->samples);
+    for (long c = 0; c < before->cells; c++) {
+        before->samples[c] = cracked->cell[c].samples;
+        cracked->cell[c].samples = (RefSamples){.count = 0};
+    }
+}
+
 /* Whether a cell is new: part of one that was split. */
 static bool is_new(const RefCracked *cracked, const RefFieldsBefore *before, long c)
 {
-    return cracked->cell[c].again && cracked->cell[c].made && before->samples[c].count == 0;
+    return cracked->cell[c].samples.count > 0 && before->samples[c].count == 0;
 }
 
 /* What samples of new cells have of the old fields, cell by cell, and the sums over cells that were
@@ -159,12 +169,12 @@ static Seen *see_parts(const RefCracked *cracked, RefFieldsBefore *before, Balan
     for (long c = 0; c < cells; c++)
         if (is_new(cracked, before, c)) parts += REF_SAMPLES_PER_CELL;
     Seen *part = sm_alloc((size_t)parts, sizeof *part), *next = part;
-    RefSamplesWork work = ref_samples_work(&before->nodes, shell->basis, &cracked->cracks, true);
+    RefSamplesWork work = ref_samples_work(&before->nodes, shell->basis, &cracked->cracks_before);
     for (long c = 0; c < cells; c++) {
         const RefCrackedCell *cell = cracked->cell + c;
         const RefSamples *old = before->samples + c;
         RefSamples had = {.count = 0};
-        for (long p = 0; !cell->made && p < old->count; p++) {
+        for (long p = 0; cell->samples.count == 0 && p < old->count; p++) {
             Seen seen = seen_before(cracked, old, p, old, before);
             add_seen(&seen, old->area[p], &balance[c].was);
         }
@@ -225,7 +235,7 @@ void ref_fields_residuals(const RefCracked *cracked, RefFieldsBefore *before,
     for (long c = 0; c < before->cells; c++) {
         const RefCrackedCell *cell = cracked->cell + c;
         const RefSamples *old = before->samples + c;
-        for (long p = 0; cell->again && p < cell->samples.count; p++) {
+        for (long p = 0; p < cell->samples.count; p++) {
             Seen seen;
             if (old->count && is_as_before(cracked, before, old, &cell->samples, p)) continue;
             if (old->count)

@@ -21,7 +21,7 @@ typedef struct {
     RefShape shape;
     double (*part)[6];   /* of `shape` */
     long cells;          /* of the tree as it became, */
-    RefSamples *samples; /* [cells] and what cells had that have others now; else empty */
+    RefSamples *samples; /* [cells] and what cells had */
 } RefFieldsBefore;
 
 /* Before functions change, but after cracks were grown. `fields` may be NULL: none. The caller
@@ -32,6 +32,9 @@ void ref_fields_before_free(RefFieldsBefore *before);
 /* All fields' parameters at a new node of a cell. */
 void ref_fields_place(const RefCracked *cracked, const RefCrackedCell *cell, int node,
                       RefFieldsBefore *before, const RefCrackedFields *fields);
+
+/* Takes the cells' samples, after some were split. */
+void ref_fields_take_samples(RefCracked *cracked, RefFieldsBefore *before);
 
 /* The residuals, once all samples are those of the new functions. */
 void ref_fields_residuals(const RefCracked *cracked, RefFieldsBefore *before,

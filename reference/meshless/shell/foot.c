@@ -37,7 +37,6 @@ typedef struct {
     const double (*theta)[2];
     const double (*x)[3];
     const RefCracked *cracked;
-    const bool *leant;
     double (*field)[FIELDS]; /* [nodes] */
     Sight *sight;
     RefFootPoints *points; /* of a block, whose parameters are */
@@ -337,29 +336,20 @@ static int place_of(const void *data, long point)
     return ref_samples_nearest(middle, edge, feet->theta[point]);
 }
 
-static bool is_stale(const void *data, long cell, int nodes, const int *node)
-{
-    const Feet *feet = data;
-    if (ref_cracked_again(feet->cracked, cell)) return true;
-    for (int n = 0; n < nodes; n++)
-        if (feet->leant[node[n]]) return true;
-    return false;
-}
-
-void ref_foot_renew(const RefCracked *cracked, const RefWarp *warp, const bool *leant,
-                    const double (*theta)[2], const double (*x)[3], RefSkin *skin, long *loose)
+void ref_foot_renew(const RefCracked *cracked, const RefWarp *warp, const double (*theta)[2],
+                    const double (*x)[3], RefSkin *skin, long *loose)
 {
     Sight sight = {.cell = -1};
     double at[REF_SKIN_BLOCK][2], (*field)[FIELDS] = sm_alloc((size_t)warp->nodes, sizeof *field);
     RefFootPoints *points = sm_alloc(1, sizeof *points);
-    Feet feet = {cracked->shell, warp, theta, x, cracked, leant, field, &sight, points, at};
+    Feet feet = {cracked->shell, warp, theta, x, cracked, field, &sight, points, at};
     for (long n = 0; n < warp->nodes; n++) {
         memcpy(field[n] + PLACE, warp->X[n], sizeof warp->X[n]);
         memcpy(field[n] + NORMAL, warp->rest_normal[n], sizeof warp->rest_normal[n]);
     }
     RefSkinCarrier carrier = {&feet, &cracked->shell->nodes, cell_of, weigh, nearest, place_of,
                               share};
-    ref_skin_renew(&carrier, is_stale, skin, loose);
+    ref_skin_renew(&carrier, skin, loose);
     sm_free_all(field, points);
 }
 

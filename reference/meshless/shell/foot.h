@@ -17,11 +17,10 @@
 void ref_foot_skin(const RefShell *shell, const RefWarp *warp, long count, const double (*theta)[2],
                    const double (*x)[3], RefSkin *skin, long *loose);
 
-/* The same of points in cells, counted as when the skin was made, that the last update took again,
- * and of those which nodes move whose normals `leant` marks, as the sheet has it. Points are
- * numbered as then. `loose` changes by those that are so no more, or now. */
-void ref_foot_renew(const RefCracked *cracked, const RefWarp *warp, const bool *leant,
-                    const double (*theta)[2], const double (*x)[3], RefSkin *skin, long *loose);
+/* The same of a shell that cracks, after an update. Points are numbered as when the skin was made.
+ */
+void ref_foot_renew(const RefCracked *cracked, const RefWarp *warp, const double (*theta)[2],
+                    const double (*x)[3], RefSkin *skin, long *loose);
 
 /* Offsets along the parameters and up the normal that lead to x from a place, given with its slopes
  * and those of its normal; where Newton's steps find none within reach, those in the frame there,

@@ -66,7 +66,7 @@ RefFaceStress *ref_fracture_stresses(const RefCracked *cracked, const double (*u
     for (long c = 0; c < cracked->shell->tree.count; c++) {
         if (c + 1 < cracked->shell->tree.count)
             ref_samples_fetch_quarters(&cracked->cell[c + 1].samples);
-        for (int q = 0; cracked->cell[c].made && q < 4; q++)
+        for (int q = 0; cracked->cell[c].samples.count && q < 4; q++)
             stress[(*count)++] =
                 stress_at(cracked, &cracked->cell[c].samples, ref_samples_quarter(q), u);
     }

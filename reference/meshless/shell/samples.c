@@ -166,14 +166,10 @@ static RefSamples create(long points)
                         .start = sm_alloc(count + 1, sizeof(long))};
 }
 
-RefSamplesWork ref_samples_work(const RefNodes *nodes, RefBasis basis, const RefCracks *cracks,
-                                bool earlier)
+RefSamplesWork ref_samples_work(const RefNodes *nodes, RefBasis basis, const RefCracks *cracks)
 {
-    return (RefSamplesWork){.nodes = nodes,
-                            .basis = basis,
-                            .cracks = cracks,
-                            .earlier = earlier,
-                            .shape = ref_shape_create(nodes)};
+    return (RefSamplesWork){
+        .nodes = nodes, .basis = basis, .cracks = cracks, .shape = ref_shape_create(nodes)};
 }
 
 void ref_samples_work_free(RefSamplesWork *work)
@@ -249,7 +245,7 @@ static bool weigh(const double at[2][ALONG], const RefSamplesWork *work, long n,
         pass_zeros(nodes, n, &grid, part);
         if (!take_parts(&grid, first, (const double(*)[6])part, of)) return false;
     }
-    return !ref_cracks_fan(work->cracks, work->earlier, &grid, node, reach, part) ||
+    return !ref_cracks_fan(work->cracks, &grid, node, reach, part) ||
            take_parts(&grid, first, (const double(*)[6])part, of);
 }
 

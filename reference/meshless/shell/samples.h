@@ -46,8 +46,7 @@ typedef struct {
 typedef struct {
     const RefNodes *nodes;
     RefBasis basis;
-    const RefCracks *cracks; /* which cut covers, */
-    bool earlier;            /* as before the changes that are not settled */
+    const RefCracks *cracks; /* which cut covers */
     RefShape shape;
     RefCellNode *node; /* [room] those that touch a cell, and */
     int *member;       /* their numbers, of images their owners' */
@@ -55,8 +54,7 @@ typedef struct {
 } RefSamplesWork;
 
 /* All are the caller's, and the nodes' `cut` says the same of the cracks. The caller frees. */
-RefSamplesWork ref_samples_work(const RefNodes *nodes, RefBasis basis, const RefCracks *cracks,
-                                bool earlier);
+RefSamplesWork ref_samples_work(const RefNodes *nodes, RefBasis basis, const RefCracks *cracks);
 void ref_samples_work_free(RefSamplesWork *work);
 
 /* Takes the shape functions after covers were enlarged where they are not defined at a sample. The

@@ -40,7 +40,7 @@ void ref_sheet_free(RefSheet *sheet)
     ref_steps_free(&sheet->steps);
     ref_warp_free(&sheet->warp);
     ref_shell_free(&sheet->shell);
-    sm_free_all(sheet->weight, sheet->force, sheet->impulse, sheet->leant);
+    sm_free_all(sheet->weight, sheet->force, sheet->impulse);
     *sheet = (RefSheet){.holds = 0};
 }
 
@@ -396,11 +396,6 @@ SmCode ref_sheet_renew(RefSheet *sheet, double *u, double *v, const double *move
         ref_warp_free(&warp);
         return code;
     }
-    free(sheet->leant);
-    sheet->leant = sm_alloc((size_t)warp.nodes, sizeof *sheet->leant);
-    for (long n = 0; n < warp.nodes; n++)
-        sheet->leant[n] = n >= sheet->warp.nodes || memcmp(sheet->warp.rest_normal[n],
-                                                           warp.rest_normal[n], sizeof(double[3]));
     release(sheet);
     ref_warp_free(&sheet->warp);
     ref_steps_free(&sheet->steps);

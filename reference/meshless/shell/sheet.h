@@ -59,7 +59,6 @@ typedef struct {
                             far a force at each moves each */
     RefRows rows;        /* of the steps: what leading holds bind, and shapes and turns of others */
     double *aim;         /* [rows] their values */
-    bool *leant; /* [nodes] whose normals at rest the last ref_sheet_renew() changed; or NULL */
 } RefSheet;
 
 /* At rest and free. `sheet` must not move in memory. The caller frees. Errors: those of shell.h and

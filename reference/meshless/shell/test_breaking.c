@@ -185,8 +185,8 @@ TEST(points_are_carried_after_cracks)
                   (const double(*)[3])x, &skin, &loose);
     for (int n = 0; n < 2; n++) {
         cut(&strip, n ? 2.9 : 1.3, n ? 0.7 : 0.4);
-        ref_foot_renew(&strip.breaking.cracked, &sheet->warp, sheet->leant,
-                       (const double(*)[2])theta, (const double(*)[3])x, &skin, &loose);
+        ref_foot_renew(&strip.breaking.cracked, &sheet->warp, (const double(*)[2])theta,
+                       (const double(*)[3])x, &skin, &loose);
     }
     assert_int_equal(loose, 0);
     const double w[3] = {0.5, -1.2, 0.4};

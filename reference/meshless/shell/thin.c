@@ -207,12 +207,25 @@ int ref_thin_element(const RefSamples *samples, long cell, double thickness,
     return REF_SAMPLES_PER_CELL - work->stiff;
 }
 
-static void add_element(const RefElement *element, RefPairs *pairs)
+void ref_element_meet(const RefElement *element, RefPairs *pairs)
+{
+    int *partner = sm_alloc((size_t)element->count, sizeof *partner);
+    for (int a = 0; a < element->count; a++) {
+        int count = 0;
+        for (int b = a; b < element->count; b++)
+            if (ref_element_sum(element, a, b)[0] != 0) partner[count++] = element->node[b];
+        ref_pairs_add(pairs, element->node[a], count, partner);
+    }
+    free(partner);
+}
+
+void ref_element_add(const RefElement *element, RefPairs *pairs)
 {
     for (int a = 0; a < element->count; a++) {
         long at = pairs->start[element->node[a]];
         for (int b = a; b < element->count; b++) {
             const double *sum = ref_element_sum(element, a, b);
+            if (sum[0] == 0) continue;
             while (pairs->partner[at] != element->node[b]) at++;
             pairs->mass[at] += sum[0];
             for (int k = 0; k < 9; k++) pairs->block[at][k] += sum[1 + k];
@@ -229,7 +242,7 @@ static long integrate_all(const RefSamples *samples, double thickness, const Ref
     long soft = 0;
     for (long c = 0; c < samples->count / REF_SAMPLES_PER_CELL; c++) {
         soft += ref_thin_element(samples, c, thickness, material, &work, &element);
-        add_element(&element, pairs);
+        ref_element_add(&element, pairs);
     }
     ref_element_free(&element);
     ref_thin_work_free(&work);

@@ -49,6 +49,10 @@ int ref_thin_element(const RefSamples *samples, long cell, double thickness,
                      const RefMaterial *material, RefThinWork *work, RefElement *element);
 void ref_element_free(RefElement *element);
 
+/* Nodes that some sample sees both meet; and the sums of nodes that have met. */
+void ref_element_meet(const RefElement *element, RefPairs *pairs);
+void ref_element_add(const RefElement *element, RefPairs *pairs);
+
 /* Whether functions leave the surface at a sample enough of what it was before any crack, by its
  * area over that in the plane and the trace of its inverse metric, for it to be stiff there; and
  * that was not drawn out by the map a thousandfold, as where a thin tip has nearly no area in the
