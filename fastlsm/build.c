@@ -589,40 +589,6 @@ void lsm_rebuild_regions(Lsm *lsm)
     free(last);
 }
 
-/* Of the rows that lists name. */
-static long row_bytes(const Lsm *lsm)
-{
-    const LsmLists *lists = &lsm->lists;
-    long values = lsm->threads * (long)lsm->group_size;
-    if (lsm->bodies == 1)
-        values = (long)row_slots(lsm) * (ROW_P + ROW_T) + lists->bar_count * ROW_BAR +
-                 lists->plate_count * (ROW_PLATE + lsm->sums->plate_down);
-    return values * (long)sizeof(real);
-}
-
-long lsm_bytes(const Lsm *lsm)
-{
-    const LsmLattice *l = &lsm->lattice;
-    const LsmLists *lists = &lsm->lists;
-    long words = (long)l->size[1] * l->size[2] * l->words, lanes = lsm->blocks * SM_LANES,
-         real_size = sizeof(real);
-    long bytes = words * 28 + l->count * (long)(sizeof *l->coord + sizeof *l->link + sizeof(int));
-    bytes += l->count * (long)((lsm->mass ? sizeof(double) : 0) + (lsm->members ? sizeof(int) : 0));
-    bytes += lanes * 9 * real_size; /* x, v, centre */
-    bytes += lsm->tiles * SM_LANES * 6 * (long)sizeof(short);
-    if (lsm->bodies == 1) /* what is in a slot */
-        bytes += (lanes * (lsm->box ? 2 : 1) + lsm->tiles * SM_LANES) * (long)sizeof(int);
-    bytes += lsm->stretch ? lsm->tiles * SM_LANES * 9 * real_size : 0;
-    bytes += (lsm->blocks + lsm->tiles) * (long)sizeof(int) + lsm->copies * (long)sizeof *lsm->copy;
-    bytes += lsm->particle_records.room * (long)sizeof(ParticleConst) +
-             lsm->region_records.room * (long)sizeof(RegionConst);
-    bytes += lsm->allocator ? lsm->allocator->bytes + l->count : 0;
-    bytes += lsm->running_lists ? lsm_running_lists_bytes(lsm->running_lists)
-                                : (lists->bar_count + lists->plate_count + lists->region_room) *
-                                      lists->side * (long)sizeof(int);
-    return bytes + row_bytes(lsm) + (lsm->box ? lsm_blocks_bytes(lsm) : 0) + lsm_fixups_bytes(lsm);
-}
-
 void lsm_free(Lsm *lsm)
 {
     free_regions(lsm);

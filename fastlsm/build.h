@@ -8,7 +8,6 @@
 #define lsm_build           SM_NAME(lsm_build)
 #define lsm_rebuild_regions SM_NAME(lsm_rebuild_regions)
 #define lsm_unique          SM_NAME(lsm_unique)
-#define lsm_bytes           SM_NAME(lsm_bytes)
 #define lsm_free            SM_NAME(lsm_free)
 
 /* Lattice, regions, slots, lists and constants of a body; the state is zero, for the caller to set.
@@ -25,9 +24,6 @@ void lsm_rebuild_regions(Lsm *lsm);
 
 /* Different regions. O(w^3) for each particle when regions have changed since it was asked. */
 long lsm_unique(Lsm *lsm);
-
-/* Memory held. */
-long lsm_bytes(const Lsm *lsm);
 
 void lsm_free(Lsm *lsm);
 

@@ -138,10 +138,3 @@ long lsm_contacts_count(const LsmContacts *k)
 {
     return k->collide->contact_count;
 }
-
-long lsm_contacts_bytes(const LsmContacts *k)
-{
-    const Lsm *lsm = k->lsm;
-    return sm_collide_bytes(k->collide) + lsm_outline_bytes(&k->outline) +
-           lsm->bodies * lsm->lattice.count * (long)sizeof *k->x;
-}

@@ -13,7 +13,6 @@
 #define lsm_contacts_after  SM_NAME(lsm_contacts_after)
 #define lsm_contacts_fix    SM_NAME(lsm_contacts_fix)
 #define lsm_contacts_count  SM_NAME(lsm_contacts_count)
-#define lsm_contacts_bytes  SM_NAME(lsm_contacts_bytes)
 
 typedef struct LsmContacts LsmContacts;
 
@@ -33,6 +32,5 @@ void lsm_contacts_after(LsmContacts *contacts, Momentum *momentum);
 void lsm_contacts_fix(LsmContacts *contacts, long count, const long *particle);
 
 long lsm_contacts_count(const LsmContacts *contacts);
-long lsm_contacts_bytes(const LsmContacts *contacts);
 
 #endif

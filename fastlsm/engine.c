@@ -630,8 +630,6 @@ static void engine_count(SmEngine *e, SmCounts *counts)
         .regions = lsm_unique(e->lsm),
         .links = lsm_lattice_links(&lsm->lattice),
         .broken = lsm->broken,
-        .bytes = lsm_bytes(lsm) + (e->contacts ? lsm_contacts_bytes(e->contacts) : 0) +
-                 momentum_bytes(e->momentum),
         .contacts = e->contacts ? lsm_contacts_count(e->contacts) : 0,
         .build_seconds = e->build_seconds,
         .jacobi_sweeps = sweeps / (double)(e->count - lsm->copies),

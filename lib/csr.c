@@ -29,12 +29,6 @@ void sm_csr_free(SmCsr *csr)
     *csr = (SmCsr){0};
 }
 
-size_t sm_csr_bytes(const SmCsr *csr)
-{
-    size_t row = sizeof *csr->first + (csr->room ? sizeof *csr->end + sizeof *csr->room : 0);
-    return (size_t)csr->row_space * row + (size_t)csr->space * (sizeof *csr->item + csr->size);
-}
-
 /* Room for so many items. */
 static void make_items(SmCsr *csr, long space)
 {

@@ -29,7 +29,6 @@ typedef struct {
  * The caller frees. O(1). */
 void sm_csr_adopt(SmCsr *csr, long count, long *first, int *item, void *value, size_t size);
 void sm_csr_free(SmCsr *csr);
-size_t sm_csr_bytes(const SmCsr *csr);
 
 /* Empty rows are added until there are `count`. O(rows added), on average. */
 void sm_csr_grow(SmCsr *csr, long count);

@@ -151,23 +151,3 @@ void oct_free(Oct *oct)
                 oct->block, oct->share, oct->spread, oct->rows, oct->body, oct->obstacles.obstacle);
     free(oct);
 }
-
-long oct_bytes(const Oct *oct)
-{
-    size_t blocks = (size_t)oct->block_room, lanes = blocks * SM_LANES;
-    size_t row_count = (size_t)(oct->lists.base + oct->node_room);
-    size_t structure = oct_sum_lists_bytes(&oct->lists) +
-                       (size_t)oct->node_room * (sizeof(int) + 1) + oct_levels_bytes(&oct->inner) +
-                       lanes * sizeof(int) + blocks * (sizeof(OctConst) + sizeof(int) + 1) +
-                       (size_t)oct->collinear_room * sizeof(OctCollinear);
-    if (oct->goal_lists.rows.first) structure += oct_sum_lists_bytes(&oct->goal_lists);
-    size_t rows = (row_count * (2 * OCT_ROW + OCT_ROW_VELOCITY) + lanes * 3) * sizeof(real);
-    size_t state = lanes * (9 * sizeof(real) + 6 * sizeof(short));
-    if (oct->params.polar == SM_POLAR_JACOBI) state += lanes * 9 * sizeof(real);
-    if (oct->spread) {
-        structure += lanes * 6 * sizeof(real);
-        state += lanes * 18 * sizeof(real);
-    }
-    structure += oct_dynamic_body_bytes(oct->dynamic) + oct_ghosts_bytes(oct);
-    return (long)(structure + (size_t)oct->workers * rows + (size_t)oct->instances * state);
-}

@@ -6,7 +6,6 @@
 
 #define oct_build       SM_NAME(oct_build)
 #define oct_free        SM_NAME(oct_free)
-#define oct_bytes       SM_NAME(oct_bytes)
 #define oct_shape       SM_NAME(oct_shape)
 #define oct_share_start SM_NAME(oct_share_start)
 
@@ -16,7 +15,6 @@
 Oct *oct_build(const OctTree *tree, const OctRegions *regions, const double *mass,
                const OctParams *params);
 void oct_free(Oct *oct);
-long oct_bytes(const Oct *oct);
 
 /* Sets the rest shapes of a plastic body's regions; `S` is [leaves][9]. */
 void oct_shape(Oct *oct, long body, const double (*S)[9]);

@@ -133,10 +133,3 @@ long oct_contacts_count(const OctContacts *k)
 {
     return k->collide->contact_count;
 }
-
-long oct_contacts_bytes(const OctContacts *k)
-{
-    long all = k->oct->instances * k->nodes;
-    return sm_collide_bytes(k->collide) + oct_outline_bytes(&k->outline) +
-           all * (long)(sizeof *k->x + sizeof *k->frame);
-}

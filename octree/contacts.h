@@ -15,7 +15,6 @@
 #define oct_contacts_after   SM_NAME(oct_contacts_after)
 #define oct_contacts_fix     SM_NAME(oct_contacts_fix)
 #define oct_contacts_count   SM_NAME(oct_contacts_count)
-#define oct_contacts_bytes   SM_NAME(oct_contacts_bytes)
 
 typedef struct OctContacts OctContacts;
 
@@ -42,6 +41,5 @@ void oct_contacts_after(OctContacts *contacts, Momentum *momentum);
 void oct_contacts_fix(OctContacts *contacts, long count, const long *node);
 
 long oct_contacts_count(const OctContacts *contacts);
-long oct_contacts_bytes(const OctContacts *contacts);
 
 #endif

@@ -173,12 +173,3 @@ void oct_dynamic_body_free(OctDynamicBody *c)
     oct_transfer_free(&c->transfer);
     sm_free_all(c->slot, c->place, c->dirty, c);
 }
-
-size_t oct_dynamic_body_bytes(const OctDynamicBody *c)
-{
-    if (!c) return 0;
-    return sizeof *c + oct_weights_bytes(&c->weights) +
-           oct_weights_change_bytes(&c->weights_change) + oct_transfer_bytes(&c->transfer) +
-           (size_t)c->nodes * (sizeof *c->slot + sizeof *c->place) +
-           (size_t)c->blocks * sizeof *c->dirty;
-}

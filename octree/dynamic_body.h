@@ -6,10 +6,9 @@
 #include "region/weights_change.h"
 #include "state_transfer.h"
 
-#define oct_prepare            SM_NAME(oct_prepare)
-#define oct_change             SM_NAME(oct_change)
-#define oct_dynamic_body_free  SM_NAME(oct_dynamic_body_free)
-#define oct_dynamic_body_bytes SM_NAME(oct_dynamic_body_bytes)
+#define oct_prepare           SM_NAME(oct_prepare)
+#define oct_change            SM_NAME(oct_change)
+#define oct_dynamic_body_free SM_NAME(oct_dynamic_body_free)
 
 typedef struct OctDynamicBody {
     double mass; /* of the body, in mass_unit */
@@ -36,6 +35,5 @@ void oct_prepare(Oct *oct, const OctStructure *structure);
 void oct_change(Oct *oct, const OctStructure *structure, const OctChange *change, bool held);
 
 void oct_dynamic_body_free(OctDynamicBody *dynamic);
-size_t oct_dynamic_body_bytes(const OctDynamicBody *dynamic);
 
 #endif

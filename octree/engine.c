@@ -544,8 +544,6 @@ static void engine_count(SmEngine *e, SmCounts *counts)
         .particles = e->oct->instances * e->count,
         .regions = e->count,
         .links = s->graph.edges.live / 2,
-        .bytes = oct_bytes(e->oct) + (long)oct_structure_bytes(s) +
-                 (e->contacts ? oct_contacts_bytes(e->contacts) : 0) + momentum_bytes(e->momentum),
         .contacts = e->contacts ? oct_contacts_count(e->contacts) : 0,
         .build_seconds = e->build_seconds,
         .summation_nodes = s->regions.mean,

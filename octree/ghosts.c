@@ -144,14 +144,6 @@ void oct_ghosts_free(Oct *oct)
     sm_free_all(oct->frame, oct->ghost, oct->middle);
 }
 
-size_t oct_ghosts_bytes(const Oct *oct)
-{
-    size_t frames = (size_t)oct->frames, origins = (size_t)oct->instances * frames;
-    size_t bytes = origins * sizeof *oct->body->origin + (size_t)oct->ghosts * sizeof *oct->ghost;
-    if (oct->frame) bytes += (size_t)oct_slots(oct->leaves) * sizeof(int);
-    return bytes + frames * sizeof *oct->middle;
-}
-
 /* ---- their sums */
 
 /* Copies the row that a ghost stands for, of `size` values; `by` is from its own origin to that of

@@ -13,7 +13,6 @@
 #define oct_ghosts_fill       SM_NAME(oct_ghosts_fill)
 #define oct_ghosts_merge      SM_NAME(oct_ghosts_merge)
 #define oct_ghosts_free       SM_NAME(oct_ghosts_free)
-#define oct_ghosts_bytes      SM_NAME(oct_ghosts_bytes)
 #define oct_ghosts_moments    SM_NAME(oct_ghosts_moments)
 #define oct_ghosts_transforms SM_NAME(oct_ghosts_transforms)
 #define oct_ghosts_products   SM_NAME(oct_ghosts_products)
@@ -29,7 +28,6 @@ void oct_ghosts_fill(Oct *oct, const OctTree *tree, const OctWeights *weights);
 void oct_ghosts_merge(Oct *oct);
 
 void oct_ghosts_free(Oct *oct);
-size_t oct_ghosts_bytes(const Oct *oct);
 
 /* Passes of a step: ghosts from the rows that they stand for. The damping's products need the
  * moments of the same step. */

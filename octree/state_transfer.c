@@ -239,8 +239,3 @@ void oct_transfer_free(OctTransfer *t)
     free(t->of);
     *t = (OctTransfer){0};
 }
-
-size_t oct_transfer_bytes(const OctTransfer *t)
-{
-    return (size_t)t->room * sizeof *t->donor + (size_t)t->leaves * sizeof *t->of;
-}

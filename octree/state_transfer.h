@@ -25,7 +25,6 @@
 #define oct_transfer_keep  SM_NAME(oct_transfer_keep)
 #define oct_transfer_start SM_NAME(oct_transfer_start)
 #define oct_transfer_free  SM_NAME(oct_transfer_free)
-#define oct_transfer_bytes SM_NAME(oct_transfer_bytes)
 
 /* One removed leaf; lengths in finest cells, those at rest from the tree's first node. */
 typedef struct {
@@ -57,6 +56,5 @@ void oct_transfer_start(Oct *oct, const OctChange *change, const double *below, 
                         bool free, const OctTransfer *transfer);
 
 void oct_transfer_free(OctTransfer *transfer);
-size_t oct_transfer_bytes(const OctTransfer *transfer);
 
 #endif

@@ -305,17 +305,8 @@ static void brute_count(SmEngine *engine, SmCounts *counts)
                          .regions = ref_regions_unique(&first->regions),
                          .links = first->links.start[engine->count] / 2,
                          .build_seconds = engine->build_seconds};
-    size_t bytes = sizeof *engine + (size_t)engine->count * sizeof *engine->mass;
-    for (long b = 0; b < engine->params.instances; b++) {
-        const Body *body = engine->body + b;
-        counts->broken += body->broken_count;
-        bytes += sizeof *body + (size_t)body->links.start[engine->count] * sizeof(int) +
-                 (size_t)body->regions.start[engine->count] * sizeof(int) +
-                 (size_t)body->broken_count * sizeof *body->broken +
-                 (size_t)engine->count *
-                     (2 * sizeof(long) + sizeof(RefMatch) + 5 * sizeof *body->x + sizeof(bool));
-    }
-    counts->bytes = (long)bytes;
+    for (long b = 0; b < engine->params.instances; b++)
+        counts->broken += engine->body[b].broken_count;
 }
 
 static long brute_region(SmEngine *engine, long p, long *member, long room)

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "../../lib/system/heap.h"
 #include "../../octree/octree.h"
 #include "../../reference/octree_goals.h"
 #include "cubes.h"
@@ -138,7 +139,9 @@ static void create(BenchTreeStep *step)
                         .form = step->adjoint ? OCT_ADJOINT : OCT_HIERARCHICAL,
                         .damping = damping,
                         .threads = step->threads};
+    step->bytes = -sm_heap_used();
     Oct *oct = oct_build(&body->tree, &body->regions, body->mass, &params);
+    step->bytes += sm_heap_used();
     step->engine = oct;
     step->trial = (BenchTrial){.timed = {step, start, run_step},
                                .finite = finite_at_end,
@@ -146,7 +149,6 @@ static void create(BenchTreeStep *step)
                                .lap_sets = step->parts ? OCT_PHASES : 0,
                                .valid = true};
     step->counts = oct_step_counts(&body->tree, &oct->lists, oct_goal_lists(oct));
-    step->bytes = oct_bytes(oct);
     step->x = sm_alloc((size_t)oct->leaves, sizeof *step->x);
     step->v = sm_alloc((size_t)oct->leaves, sizeof *step->v);
     disturb(step, (unsigned)step->seed);
@@ -177,13 +179,4 @@ static double ns(const BenchTreeStep *step, BenchTreePart part, int r)
     return 1e9 * bench_trial_stage(&step->trial, r, of[part].first, of[part].last, of[part].stage);
 }
 
-static long build(const OctTree *tree, const OctRegions *regions, const double *mass)
-{
-    OctParams params = {.damping = damping, .threads = 1};
-    Oct *oct = oct_build(tree, regions, mass, &params);
-    long bytes = oct_bytes(oct);
-    oct_free(oct);
-    return bytes;
-}
-
-const BenchTreeSteps SM_NAME(bench_tree_steps) = {create, ns, destroy, build};
+const BenchTreeSteps SM_NAME(bench_tree_steps) = {create, ns, destroy};

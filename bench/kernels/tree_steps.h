@@ -32,7 +32,7 @@ typedef struct {
     unsigned long seed;
     /* found */
     OctStepCounts counts; /* of its lists */
-    long bytes;           /* the engine's memory */
+    long bytes;           /* that the engine took; 0: not known */
     void *engine;
     double (*x)[3], (*v)[3]; /* [leaves] where samples start */
 } BenchTreeStep;
@@ -47,9 +47,6 @@ typedef struct {
     double (*ns)(const BenchTreeStep *step, BenchTreePart part, int r);
 
     void (*free)(BenchTreeStep *step);
-
-    /* Builds and frees an engine, the last part of setting a body up; returns its memory. */
-    long (*build)(const OctTree *tree, const OctRegions *regions, const double *mass);
 } BenchTreeSteps;
 
 /* Of the instruction set in use (lib/isa.h). */

@@ -146,25 +146,11 @@ static void find_busy(Times *times, char *cause, BenchChangeRow *row)
     row->follow_ms = row->surface_ms = NAN;
 }
 
-/* Bytes of the surfaces' embeddings, over the particles of one instance of each. */
-static double surface_bytes(const BenchPlayback *play)
-{
-    double bytes = 0, particles = 0;
-    for (int g = 0; g < play->count; g++) {
-        const BenchGroup *group = &play->group[g];
-        bytes += (double)sm_embed_bytes(&group->skin.embedding);
-        bytes += (double)oct_surface_bytes(&group->skin.carried);
-        particles += (double)(group->runner.particles / group->body.instances);
-    }
-    return bytes / particles;
-}
-
 static void note_end(const BenchPlayback *play, BenchChangeRow *row)
 {
     long vertices;
     row->last_nodes = bench_playback_particles(play);
     bench_playback_size(play, &vertices, &row->last_triangles);
-    row->surface_bytes = surface_bytes(play);
     for (int g = 0; g < play->count; g++) {
         SmMeshInfo info = sm_mesh_info(&play->group[g].skin.surface);
         long bodies = play->group[g].body.instances;

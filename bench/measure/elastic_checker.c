@@ -115,7 +115,7 @@ void bench_elastic_row_explain(FILE *file, const BenchRow *row)
     const BenchElasticRow *e = &row->elastic;
     fprintf(file,
             "    surface function in %.3g s, matrices of %ld nodes in %.3g s, %ld modes in %.3g s, "
-            "the points' shape functions in %.3g s; octants of %.4g; %.3g MB a frame\n",
+            "the points' shape functions in %.3g s; octants of %.4g; %.3g MB\n",
             e->field_seconds, e->nodes, e->matrix_seconds, e->modes, e->mode_seconds,
             e->skin_seconds, row->cell, 1e-6 * (double)row->bytes);
 }

@@ -187,7 +187,7 @@ static void count(const BenchPlayback *play, BenchRow *row)
         runner->type->count(runner->engine, &counts);
         row->particles += counts.particles;
         row->regions = counts.regions;
-        row->bytes += counts.bytes;
+        row->bytes += runner->bytes;
         row->build_seconds += counts.build_seconds;
     }
 }

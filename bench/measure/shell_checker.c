@@ -98,7 +98,7 @@ void bench_shell_row_explain(FILE *file, const BenchRow *row)
     fprintf(
         file,
         "    parameters in %.3g s, angles off by %.2g degrees (median); matrices of %ld nodes in "
-        "%.3g s, the points' shape functions in %.3g s; %.3g MB a frame\n",
+        "%.3g s, the points' shape functions in %.3g s; %.3g MB\n",
         e->map_seconds, e->angle, e->nodes, e->matrix_seconds, e->skin_seconds,
         1e-6 * (double)row->bytes);
 }

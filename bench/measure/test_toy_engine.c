@@ -80,7 +80,7 @@ static void toy_set(SmEngine *e, SmField field, const double (*values)[3])
 
 static void toy_count(SmEngine *e, SmCounts *counts)
 {
-    *counts = (SmCounts){.particles = e->count, .bytes = 72 * e->count};
+    *counts = (SmCounts){.particles = e->count};
 }
 
 static const SmStages toy_stages = {.of = {[SM_OTHER] = {"pull", "pull", "pull", "the springs"}},

@@ -13,7 +13,7 @@ void bench_tree_row_fill(const BenchRunner *runner, BenchRow *row)
     runner->type->count(runner->engine, &counts);
     row->particles = counts.particles;
     row->instances = runner->body->instances;
-    row->bytes = counts.bytes;
+    row->bytes = runner->bytes;
     row->epsilon = scene->octree.epsilon;
     row->summation_nodes = s->regions.mean;
     row->most_summation = s->regions.most;

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../lib/system/heap.h"
 #include "../engines.h"
 
 SmEngineParams bench_engine_params(const BenchScene *scene, const BenchBody *body, int threads)
@@ -298,7 +299,9 @@ SmCode bench_runner_create(const BenchScene *scene, const BenchBody *body, const
     SmError why;
     SmCode code = check_engine(scene, type, error);
     if (code) return code;
+    runner->bytes = -sm_heap_used();
     code = type->create(&body->voxels, &params, &runner->engine, &why);
+    runner->bytes += sm_heap_used();
     if (code) {
         runner->engine = NULL;
         return sm_fail(error, code, "%s: %s", scene->file, why.text);

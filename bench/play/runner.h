@@ -17,6 +17,7 @@ typedef struct BenchRunner {
     SmHandle *handle;
     int *handle_source;    /* [held] the scene's handle */
     long *handle_instance; /* [held] */
+    long bytes;            /* that the engine took when it was made; 0: not known (heap.h) */
     int grips;             /* handles beside the scene's (bench_runner_grip()), */
     const SmHandle *grip;  /* the caller's, kept */
     SmHandle *bound;       /* [bound_count] those that still hold, as handed to the engine */

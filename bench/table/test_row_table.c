@@ -13,7 +13,7 @@ static const char header[] =
     "damping_ms,other_ms,total_ms,ns_per_particle_step,paper_total_ms,ratio,valid,fps,"
     "speedup,summation_nodes,last_particles,frame_ms,last_frame_ms,resampling_ms,"
     "most_resampling_ms,splitting_ms,surface_ms,nodes,modes,matrices_s,modes_s,total_low_ms,"
-    "total_high_ms,steps,busy,lost_percent,load,samples_ms,surface_bytes,isa,state_hash,cycles,"
+    "total_high_ms,steps,busy,lost_percent,load,samples_ms,isa,state_hash,cycles,"
     "instructions,"
     "cache_misses,branch_misses";
 

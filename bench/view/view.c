@@ -258,8 +258,7 @@ static double counted(const ViewSide *side, int figure)
         long value[] = {
             [VIEW_PARTICLES] = counts.particles,  [VIEW_REGIONS] = bodies * counts.regions,
             [VIEW_LINKS] = bodies * counts.links, [VIEW_BROKEN] = counts.broken,
-            [VIEW_CONTACTS] = counts.contacts,    [VIEW_SUMMATION_NODES] = 0,
-            [VIEW_BYTES] = counts.bytes};
+            [VIEW_CONTACTS] = counts.contacts,    [VIEW_SUMMATION_NODES] = 0};
         sum += (double)value[figure];
         mean = counts.summation_nodes;
     }

@@ -44,9 +44,8 @@ enum {
     VIEW_BROKEN,
     VIEW_CONTACTS,
     VIEW_SUMMATION_NODES, /* per region, of the octree */
-    VIEW_BYTES,
-    VIEW_BUILD_MS, /* that making it took here */
-    VIEW_TIME,     /* s simulated */
+    VIEW_BUILD_MS,        /* that making it took here */
+    VIEW_TIME,            /* s simulated */
     VIEW_STEPS,
     VIEW_KINETIC,  /* energy, J for masses in kg */
     VIEW_MOMENTUM, /* length of it */

@@ -88,9 +88,6 @@ void lsm_allocator_open(LsmLists *lists, int layers, const int *layer_plane, lon
     for (int l = 0; l < layers; l++)
         for (int z = layer_plane[l]; z < layer_plane[l + 1]; z++)
             allocator->layer_end[z] = layer_plane[l + 1];
-    allocator->bytes = (2 * (lists->bar_count + lists->plate_count) + (long)allocator->bars.mask +
-                        (long)allocator->plates.mask + 3 * lists->planes) *
-                       (long)sizeof(int);
 }
 
 static void free_store(LsmRowStore *store)

@@ -24,7 +24,6 @@ typedef struct {
 typedef struct {
     LsmRowStore bars, plates;
     int *layer_end; /* [planes] the plane behind the layer of each plane */
-    long bytes;
 } LsmListAllocator;
 
 /* Gives each layer (planes layer_plane[l] .. layer_plane[l + 1] - 1) a quarter more rows and

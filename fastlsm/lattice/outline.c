@@ -107,10 +107,3 @@ void lsm_outline_free(LsmOutline *o)
     sm_free_all(o->carrier, o->across, o->to, o->length, o->x0, o->centre, o->edge, o->first);
     *o = (LsmOutline){0};
 }
-
-long lsm_outline_bytes(const LsmOutline *o)
-{
-    long particle = (long)(CORNERS * sizeof(int) + sizeof *o->across + sizeof *o->x0 +
-                           sizeof *o->centre + sizeof *o->edge + sizeof *o->first);
-    return o->rest.nodes * particle + o->first[o->rest.nodes] * (long)(2 * sizeof(int));
-}

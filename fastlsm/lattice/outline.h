@@ -18,6 +18,5 @@ typedef struct {
  * coordinates there. `mass` [particles] or NULL is not copied. O(particles); the caller frees. */
 void lsm_outline_build(const LsmLattice *lattice, const double *mass, LsmOutline *outline);
 void lsm_outline_free(LsmOutline *outline);
-long lsm_outline_bytes(const LsmOutline *outline);
 
 #endif

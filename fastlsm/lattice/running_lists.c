@@ -182,14 +182,3 @@ void lsm_running_lists_free(LsmRunningLists *running)
     free_list(&running->plate);
     free_list(&running->region);
 }
-
-static long list_bytes(const LsmRunningList *running)
-{
-    return running->rows * 2 * (long)sizeof(int) +
-           running->first[running->rows] * (long)sizeof(LsmTerm);
-}
-
-long lsm_running_lists_bytes(const LsmRunningLists *running)
-{
-    return list_bytes(&running->bar) + list_bytes(&running->plate) + list_bytes(&running->region);
-}

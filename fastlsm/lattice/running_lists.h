@@ -43,6 +43,5 @@ void lsm_running_factors(int w, double factor[LSM_FACTORS][2]);
 void lsm_running_lists_build(const LsmLattice *lattice, const LsmLists *lists, int layers,
                              const int *layer_plane, LsmRunningLists *running_lists);
 void lsm_running_lists_free(LsmRunningLists *running_lists);
-long lsm_running_lists_bytes(const LsmRunningLists *running_lists);
 
 #endif

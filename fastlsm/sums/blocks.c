@@ -305,16 +305,6 @@ void lsm_blocks_share(Lsm *lsm)
     box->shared_bytes = (stores * most * 6 * SM_LANES + lsm->threads * own) * (long)sizeof(real);
 }
 
-long lsm_blocks_bytes(const Lsm *lsm)
-{
-    long a_block =
-        (lsm->side + 1) * (long)sizeof(int) + (long)sizeof *lsm->live + 2 * (long)sizeof(bool);
-    long rows = lsm->box->plane_run[lsm->layers] * (long)sizeof(BlockRun);
-    const LsmLattice *l = &lsm->lattice;
-    rows += (long)l->size[1] * l->size[2] * (l->words * (long)sizeof(uint64_t) + (long)sizeof(int));
-    return lsm->blocks * a_block + rows + lsm->box->shared_bytes;
-}
-
 void lsm_blocks_free(Blocks *box)
 {
     if (!box) return;

@@ -11,7 +11,6 @@
 #define lsm_blocks_regular SM_NAME(lsm_blocks_regular)
 #define lsm_blocks_share   SM_NAME(lsm_blocks_share)
 #define lsm_blocks_free    SM_NAME(lsm_blocks_free)
-#define lsm_blocks_bytes   SM_NAME(lsm_blocks_bytes)
 
 /* From which w on sums move along y and z, and after how many rows and planes they are summed anew.
  * After 32 rows a w of 5 is 3% faster, but rounding has added up to where large bodies at rest do
@@ -70,7 +69,5 @@ bool lsm_blocks_regular(const Lsm *lsm, long p, const uint64_t *rows);
 void lsm_blocks_share(Lsm *lsm);
 
 void lsm_blocks_free(Blocks *box);
-
-long lsm_blocks_bytes(const Lsm *lsm);
 
 #endif

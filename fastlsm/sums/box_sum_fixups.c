@@ -371,13 +371,3 @@ void lsm_fixups_free(Fixups *fixups)
     free(fixups->kept);
     free(fixups);
 }
-
-long lsm_fixups_bytes(const Lsm *lsm)
-{
-    const Fixups *c = lsm->fixups;
-    if (!c) return 0;
-    long parts = PARTS * lsm->blocks;
-    return (c->up.first[parts] + c->down.first[parts]) * (long)sizeof(Fixup) +
-           lsm->blocks * (long)(2 * PARTS * sizeof(long) + 2 * sizeof(uint16_t) + sizeof(int)) +
-           c->rows * (long)(12 * SM_LANES * sizeof(real));
-}

@@ -22,7 +22,6 @@
 #define lsm_fixups_mark      SM_NAME(lsm_fixups_mark)
 #define lsm_fixups_free      SM_NAME(lsm_fixups_free)
 #define lsm_fixups_keep      SM_NAME(lsm_fixups_keep)
-#define lsm_fixups_bytes     SM_NAME(lsm_fixups_bytes)
 #define lsm_fixup_regions    SM_NAME(lsm_fixup_regions)
 #define lsm_fixup_products   SM_NAME(lsm_fixup_products)
 #define lsm_fixup_goals      SM_NAME(lsm_fixup_goals)
@@ -65,8 +64,6 @@ void lsm_fixups_close(FixupsBuilder *builder, int shares, Lsm *lsm);
 void lsm_fixups_mark(const Lsm *lsm);
 
 void lsm_fixups_free(Fixups *fixups);
-
-long lsm_fixups_bytes(const Lsm *lsm);
 
 /* Fix up the 12 sums of a block's regions, or their 12 products for damping; the 3 or 6 sums of its
  * particles. */

@@ -449,16 +449,3 @@ long sm_collide_list(const SmCollide *c, double cell, SmContact **contact)
     }
     return c->contact_count;
 }
-
-long sm_collide_bytes(const SmCollide *c)
-{
-    const SmCollideWork *work = c->work;
-    size_t bytes = (size_t)(c->bodies * c->shape.nodes) * (sizeof(int) + 1) +
-                   (size_t)(c->bodies * work->patches.count) * 2 * sizeof(SmBox) +
-                   (size_t)(c->bodies * c->shape.cell_count) * sizeof(SmBox) +
-                   (size_t)work->contact_room * 2 * sizeof *c->contact +
-                   (size_t)work->node_room * (sizeof(int) + sizeof(double) + 2 * sizeof *c->v);
-    return (long)bytes + sm_collide_pairs_bytes(&work->pairs) +
-           sm_collide_patches_bytes(&work->patches) + sm_collide_paths_bytes(&work->paths) +
-           sm_collide_shape_bytes(&c->shape);
-}

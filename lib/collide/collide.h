@@ -114,6 +114,4 @@ void sm_collide_respond(SmCollide *collide);
  * caller frees; returns how many. */
 long sm_collide_list(const SmCollide *collide, double cell, SmContact **contact);
 
-long sm_collide_bytes(const SmCollide *collide);
-
 #endif

@@ -103,16 +103,6 @@ void sm_collide_pairs_free(SmCollidePairs *w)
     *w = (SmCollidePairs){0};
 }
 
-long sm_collide_pairs_bytes(const SmCollidePairs *w)
-{
-    long pairs = w->room, patch = (long)(sizeof *w->patch + sizeof *w->box + 1);
-    for (long b = 0; b < w->bodies; b++) pairs += w->near[b].room;
-    if (w->params.self) patch += (long)sizeof *w->wide;
-    return w->bodies * (w->boxes * (long)sizeof *w->tree + w->patches->count * patch +
-                        (long)sizeof *w->near) +
-           pairs * (long)sizeof *w->pair;
-}
-
 static Range lower(Range r)
 {
     return (Range){r.body, r.from, (r.from + r.to) / 2, r.at + 1};

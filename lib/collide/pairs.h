@@ -57,7 +57,6 @@ typedef struct {
 void sm_collide_pairs_init(SmCollidePairs *pairs, const SmCollidePatches *patches,
                            const SmCollideParams *params, long bodies);
 void sm_collide_pairs_free(SmCollidePairs *pairs);
-long sm_collide_pairs_bytes(const SmCollidePairs *pairs);
 
 /* The pairs of positions x [bodies * nodes][3]. O(carriers of the patches + pairs of wide boxes
  * that overlap), and where a patch has left its wide box O(pairs of patches that are near each

@@ -536,11 +536,3 @@ void sm_collide_patches_free(SmCollidePatches *patches)
                 patches->joined, patches->margin);
     *patches = (SmCollidePatches){0};
 }
-
-long sm_collide_patches_bytes(const SmCollidePatches *patches)
-{
-    long n = patches->count;
-    long ints = patches->cell_first[n] + patches->node_first[n] + patches->carrier_first[n] +
-                patches->joined_first[n];
-    return ints * (long)sizeof(int) + n * (long)(4 * sizeof(long) + sizeof(double));
-}

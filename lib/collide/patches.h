@@ -26,7 +26,6 @@ typedef struct {
  * far from a cell of the other. O(nodes + edges + pairs of patches near each other). */
 void sm_collide_patches_build(const SmCollideShape *shape, SmCollidePatches *patches);
 void sm_collide_patches_free(SmCollidePatches *patches);
-long sm_collide_patches_bytes(const SmCollidePatches *patches);
 
 /* The box of all that may touch anything, of patch p of a body whose nodes are at x. */
 SmBox sm_collide_patches_box(const SmCollidePatches *patches, const double (*x)[3], long p);

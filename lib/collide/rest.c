@@ -218,15 +218,6 @@ void sm_collide_shape_free(SmCollideShape *shape)
     *shape = (SmCollideShape){0};
 }
 
-long sm_collide_shape_bytes(const SmCollideShape *shape)
-{
-    size_t bytes = (size_t)shape->cell_count * sizeof *shape->cell +
-                   (size_t)shape->face_count * sizeof *shape->face +
-                   (size_t)shape->surface_count * sizeof(int) +
-                   (size_t)shape->nodes * 6 * sizeof(double);
-    return (long)bytes;
-}
-
 void sm_collide_paths_start(SmCollidePaths *paths, const SmCollideShape *shape)
 {
     if (shape->nodes > paths->node_room) {
@@ -247,12 +238,6 @@ void sm_collide_paths_free(SmCollidePaths *paths)
 {
     sm_free_all(paths->answer, paths->distance, paths->queue, paths->queued, paths->reached);
     *paths = (SmCollidePaths){0};
-}
-
-long sm_collide_paths_bytes(const SmCollidePaths *paths)
-{
-    return paths->node_room * (long)(3 * sizeof(int) + 1) +
-           paths->room * (long)sizeof *paths->answer;
 }
 
 static double apart(const double a[3], const double b[3])

@@ -69,9 +69,6 @@ typedef struct {
 void sm_collide_shape_build(const SmCollideRest *rest, SmCollideShape *shape);
 void sm_collide_shape_free(SmCollideShape *shape);
 
-/* Memory of it. */
-long sm_collide_shape_bytes(const SmCollideShape *shape);
-
 /* Distance that node and cell must exceed to collide, in the max norm and through the material. */
 static inline double sm_collide_apart(double size, double edge)
 {
@@ -117,7 +114,6 @@ typedef struct {
 /* For a shape, or another one. O(nodes + answers known). */
 void sm_collide_paths_start(SmCollidePaths *paths, const SmCollideShape *shape);
 void sm_collide_paths_free(SmCollidePaths *paths);
-long sm_collide_paths_bytes(const SmCollidePaths *paths);
 
 /* Whether they may collide, as far as it can be told without a search. O(edges of the node). */
 SmCollideRelation sm_collide_relation(const SmCollideShape *shape, int node, long c);

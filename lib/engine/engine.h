@@ -67,7 +67,6 @@ typedef struct {
     long regions;           /* unique regions of one instance */
     long links;             /* one-ring neighbour pairs of one instance, unbroken */
     long broken;            /* links broken so far */
-    long bytes;             /* memory held */
     double build_seconds;   /* time that create() took */
     double jacobi_sweeps;   /* mean sweeps a decomposition in the last step: lattices, by Jacobi */
     double summation_nodes; /* mean per region; octree only */

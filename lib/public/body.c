@@ -14,6 +14,7 @@
 #include "../engine/boundary.h"
 #include "../isa.h"
 #include "../system/cores.h"
+#include "../system/heap.h"
 #include "../system/team.h"
 #include "../vector.h"
 #include "inner.h"
@@ -390,7 +391,9 @@ int sb_body_create(const sb_voxels *voxels, const sb_mesh *surface, const sb_bod
                       .h = p.h,
                       .threads = p.threads,
                       .instances = inner.instances};
+    made->bytes = -sm_heap_used();
     SmCode failed = type->create(&voxels->voxels, &inner, &made->engine, &why);
+    made->bytes += sm_heap_used();
     if (failed) {
         free(made);
         return sm_done(failed, &why, error);
@@ -494,7 +497,7 @@ int sb_body_count(const sb_body *body, sb_body_counts *counts, size_t size, sb_e
                           .links = from.links,
                           .broken = from.broken,
                           .contacts = from.contacts,
-                          .bytes = from.bytes,
+                          .bytes = body->bytes,
                           .build_seconds = from.build_seconds,
                           .summation_nodes = from.summation_nodes,
                           .cut_triangles = sm_skin_cut_triangles(&body->skin),

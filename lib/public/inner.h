@@ -42,6 +42,7 @@ struct sb_body {
     SbKind kind;
     const SmEngineType *type;
     SmEngine *engine;
+    long bytes; /* that it took when it was made */
     SmVoxels voxels;
     SmSkin skin;
     double (*x0)[3]; /* [particles] of a lattice that can be cut, or NULL */

@@ -585,14 +585,6 @@ void momentum_shift(Momentum *m, long body, const double by[3])
         }
 }
 
-long momentum_bytes(const Momentum *m)
-{
-    size_t slot = sizeof *m->mass + sizeof *m->label + (m->frame ? sizeof *m->frame : 0),
-           notes = m->notes.noted ? noted_blocks(m) * (6 * SM_LANES * sizeof(real) + 1) : 0;
-    return (long)(notes + (size_t)slots_of(m) * slot + (size_t)m->piece_room * sizeof *m->piece +
-                  RUNS_AT_ONCE * sizeof(RunSum) + ((size_t)all_blocks(m) + 1) * sizeof *m->run);
-}
-
 void momentum_free(Momentum *m)
 {
     if (!m) return;

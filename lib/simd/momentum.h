@@ -33,7 +33,6 @@
 #define momentum_notes  SM_NAME(sm_momentum_notes)
 #define momentum_keep   SM_NAME(sm_momentum_keep)
 #define momentum_shift  SM_NAME(sm_momentum_shift)
-#define momentum_bytes  SM_NAME(sm_momentum_bytes)
 #define momentum_free   SM_NAME(sm_momentum_free)
 
 /* Sums over slots go as many ways side by side whatever SM_LANES is, so that rounding does not
@@ -162,8 +161,6 @@ void momentum_settle(Momentum *m, long body, const double (*origin)[3], const re
 
 /* x of a body counts from a place farther on by `by`, which no `origin` tells. */
 void momentum_shift(Momentum *m, long body, const double by[3]);
-
-long momentum_bytes(const Momentum *m);
 
 void momentum_free(Momentum *m);
 

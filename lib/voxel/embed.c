@@ -96,14 +96,6 @@ void sm_embed_free(SmEmbedding *embedding)
     *embedding = (SmEmbedding){0};
 }
 
-size_t sm_embed_bytes(const SmEmbedding *embedding)
-{
-    size_t vertex = sizeof *embedding->corner + sizeof *embedding->weight +
-                    sizeof *embedding->tangent_u + sizeof *embedding->tangent_v;
-    return (size_t)embedding->vertex_count * vertex +
-           (size_t)embedding->flat_count * sizeof *embedding->flat;
-}
-
 SM_ISA_TABLE(SmInterpolation, sm_interpolation)
 
 /* The vertex stands off what carries it, and turns with it as a rigid body. */

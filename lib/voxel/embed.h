@@ -37,7 +37,6 @@ void sm_embed_create(const SmMesh *mesh, const SmVoxels *voxels, SmEmbedding *em
 void sm_embed_grow(SmEmbedding *embedding, const SmMesh *mesh, const SmSites *sites,
                    const double (*normal)[3]);
 void sm_embed_free(SmEmbedding *embedding);
-size_t sm_embed_bytes(const SmEmbedding *embedding); /* of what it holds; 0 of a zeroed one */
 
 /* Deformed vertex positions (and unit normals, unless NULL) from particle positions x.
  * A normal whose tangents are parallel comes out zero, never NaN (while x is finite and within

@@ -227,14 +227,6 @@ static void free_resample(OctStructure *s)
     s->resample = NULL;
 }
 
-static size_t resample_bytes(const OctStructure *s)
-{
-    const OctResample *r = s->resample;
-    if (!r) return 0;
-    return sizeof *r + oct_tree_change_bytes(&r->tree) + oct_graph_change_bytes(&r->graph) +
-           oct_region_change_bytes(&r->region);
-}
-
 SmCode oct_resample_split(OctStructure *s, int node, SmError *error)
 {
     oct_resample_prepare(s);
@@ -345,16 +337,6 @@ void oct_structure_free(OctStructure *structure)
     oct_mass_free(&structure->cell_mass);
     sm_cut_free(&structure->cut);
     *structure = (OctStructure){0};
-}
-
-size_t oct_structure_bytes(const OctStructure *structure)
-{
-    const SmVoxels *v = &structure->voxels;
-    return resample_bytes(structure) + oct_tree_bytes(&structure->tree) +
-           oct_graph_bytes(&structure->graph) + oct_regions_bytes(&structure->regions) +
-           oct_mass_bytes(&structure->cell_mass, v) +
-           (size_t)v->words * (size_t)v->size[1] * (size_t)v->size[2] * sizeof *v->bits +
-           (size_t)structure->tree.leaves * (sizeof *structure->w + sizeof *structure->mass);
 }
 
 long oct_structure_parts(const OctStructure *structure)

@@ -58,7 +58,6 @@ SmCode oct_structure_of_tree(const SmVoxels *voxels, const OctOptions *options, 
                              OctTree *tree, const SmCut *cut, OctStructure *structure,
                              SmError *error);
 void oct_structure_free(OctStructure *structure);
-size_t oct_structure_bytes(const OctStructure *structure);
 
 /* Groups of nodes that no region holds together: 1 for a body that holds together. O(nodes +
  * members). */

@@ -137,11 +137,6 @@ void oct_graph_cut(const OctTree *tree, const SmVoxels *voxels, const SmCut *cut
     }
 }
 
-size_t oct_graph_bytes(const OctGraph *graph)
-{
-    return sizeof *graph + sm_csr_bytes(&graph->edges);
-}
-
 void oct_graph_free(OctGraph *graph)
 {
     sm_csr_free(&graph->edges);

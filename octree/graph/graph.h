@@ -48,7 +48,4 @@ void oct_graph_free(OctGraph *graph);
  * caller frees. O(edges). */
 void oct_graph_pieces(const OctTree *tree, const OctGraph *graph, SmPieces *pieces);
 
-/* Memory of the graph. */
-size_t oct_graph_bytes(const OctGraph *graph);
-
 #endif

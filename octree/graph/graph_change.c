@@ -27,14 +27,6 @@ void oct_graph_change_free(OctGraphChange *c)
     *c = (OctGraphChange){0};
 }
 
-size_t oct_graph_change_bytes(const OctGraphChange *c)
-{
-    return sm_csr_bytes(&c->joined) +
-           (size_t)c->leaf_space * (sizeof *c->mark + sizeof *c->visibility.mark) +
-           (size_t)(c->gone.room + c->come.room) * sizeof(OctEdge) +
-           (size_t)c->around_room * sizeof *c->around;
-}
-
 static void grow(OctGraphChange *c)
 {
     const OctTree *tree = c->tree;

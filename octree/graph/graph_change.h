@@ -42,7 +42,6 @@ typedef struct {
 void oct_graph_change_init(OctGraphChange *change, const OctTree *tree, const SmVoxels *voxels,
                            const SmCut *cut, OctGraph *graph);
 void oct_graph_change_free(OctGraphChange *change); /* the graph stays */
-size_t oct_graph_change_bytes(const OctGraphChange *change);
 
 /* Finds what edges go and come with the leaves that a batch has removed and added; the graph has
  * rows for the new ones, and is otherwise as it was. */

@@ -12,12 +12,6 @@ void oct_pairs_free(OctPairs *pairs)
     *pairs = (OctPairs){0};
 }
 
-size_t oct_pairs_bytes(const OctPairs *pairs)
-{
-    return (size_t)pairs->room * sizeof *pairs->item +
-           (size_t)pairs->distance_room * sizeof *pairs->distance;
-}
-
 static void grow(OctPairs *p)
 {
     sm_make_room(p->item, p->room, p->count + 1);

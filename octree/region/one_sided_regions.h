@@ -53,7 +53,6 @@ typedef struct {
 } OctPairs;
 
 void oct_pairs_free(OctPairs *pairs);
-size_t oct_pairs_bytes(const OctPairs *pairs);
 
 /* Appends the pairs that the last search has found; w [leaves] are the widths of all leaves. 4
  * bytes a lane, and 12 for all lanes of a leaf. */

@@ -154,12 +154,6 @@ void oct_regions_free(OctRegions *regions)
     *regions = (OctRegions){0};
 }
 
-size_t oct_regions_bytes(const OctRegions *regions)
-{
-    return sizeof *regions + sm_csr_bytes(&regions->members) +
-           (size_t)regions->members.rows * (sizeof *regions->width + sizeof *regions->size);
-}
-
 void oct_regions_leaves(const OctTree *tree, const OctRegions *regions, long i, int *leaf)
 {
     for (long n = regions->members.first[i]; n < regions->members.end[i]; n++)

@@ -47,9 +47,6 @@ void oct_regions_free(OctRegions *regions);
  * changed. O(leaves). */
 void oct_regions_measure(OctRegions *regions);
 
-/* Memory of the regions. */
-size_t oct_regions_bytes(const OctRegions *regions);
-
 /* The leaves of region i, size[i] of them, in no set order. */
 void oct_regions_leaves(const OctTree *tree, const OctRegions *regions, long i, int *leaf);
 

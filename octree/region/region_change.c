@@ -76,19 +76,6 @@ void oct_region_change_free(OctRegionChange *c)
     *c = (OctRegionChange){0};
 }
 
-size_t oct_region_change_bytes(const OctRegionChange *c)
-{
-    const OctReach *reach = &c->reach;
-    return sm_csr_bytes(&c->one_sided.members) + sm_csr_bytes(&c->one_sided.reverse) +
-           oct_search_bytes(&c->search) + (size_t)c->leaf_space * (sizeof(int) + 1) +
-           (size_t)reach->leaves *
-               (sizeof *reach->distance + sizeof *reach->reached + sizeof *reach->nearest) +
-           (size_t)c->node_space * 2 + (size_t)c->order_room * sizeof *c->order +
-           (size_t)c->list_room * sizeof *c->list + (size_t)c->fresh_room * sizeof *c->fresh +
-           (size_t)c->fresh_end_room * sizeof *c->fresh_end + oct_pairs_bytes(&c->pairs) +
-           (size_t)c->source_room * sizeof *c->source;
-}
-
 void oct_region_change_grow(OctRegionChange *c, const int *w, const int *below)
 {
     long nodes = c->tree->nodes, leaves = c->tree->leaves;

@@ -47,7 +47,6 @@ typedef struct {
 void oct_region_change_init(OctRegionChange *change, const OctTree *tree, const OctGraph *graph,
                             const int *w, double epsilon, const int *below, OctRegions *regions);
 void oct_region_change_free(OctRegionChange *change); /* the regions stay */
-size_t oct_region_change_bytes(const OctRegionChange *change);
 
 /* Begins an update: makes room for the leaves and nodes there are, whose widths are `w`. */
 void oct_region_change_grow(OctRegionChange *change, const int *w, const int *below);

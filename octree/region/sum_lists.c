@@ -231,9 +231,3 @@ void oct_sum_lists_free(OctSumLists *lists)
     sm_csr_free(&lists->rows);
     *lists = (OctSumLists){0};
 }
-
-size_t oct_sum_lists_bytes(const OctSumLists *lists)
-{
-    return sizeof(long) * ((size_t)lists->levels + 2) + sm_csr_bytes(&lists->rows) +
-           sizeof(int) * (size_t)(2 * lists->prefixes);
-}

@@ -74,6 +74,5 @@ void oct_sum_lists_reserve(OctSumLists *lists);
 void oct_sum_lists_set(OctSumLists *lists, long leaf, const int *member, long count);
 
 void oct_sum_lists_free(OctSumLists *lists);
-size_t oct_sum_lists_bytes(const OctSumLists *lists);
 
 #endif

@@ -118,9 +118,3 @@ void oct_weights_free(OctWeights *w)
     sm_free_all(w->below, w->reach, w->sum);
     memset(w, 0, sizeof *w);
 }
-
-size_t oct_weights_bytes(const OctWeights *w)
-{
-    return (size_t)w->nodes * (sizeof *w->below + sizeof *w->sum) +
-           (size_t)w->leaves * sizeof *w->reach;
-}

@@ -43,7 +43,6 @@ typedef struct {
 void oct_weights_build(const OctTree *tree, const OctRegions *regions, const double *mass,
                        OctWeighting weighting, OctWeights *weights);
 void oct_weights_free(OctWeights *weights);
-size_t oct_weights_bytes(const OctWeights *weights);
 
 /* Mass of a leaf, in mass_unit, and what it counts in region sums. */
 static inline double oct_weights_mass(const OctWeights *w, const OctTree *tree, long leaf)

@@ -145,9 +145,3 @@ void oct_weights_change_free(OctWeightsChange *s)
     sm_free_all(s->on_path, s->below, s->listed, s->leaf);
     *s = (OctWeightsChange){0};
 }
-
-size_t oct_weights_change_bytes(const OctWeightsChange *s)
-{
-    return oct_levels_bytes(&s->path) + (size_t)s->nodes * (sizeof *s->on_path + sizeof *s->below) +
-           (size_t)s->leaves * sizeof *s->listed + (size_t)s->room * sizeof *s->leaf;
-}

@@ -26,6 +26,5 @@ typedef struct {
 void oct_weights_change(const OctTree *tree, const OctRegions *regions, const double *mass,
                         const OctChange *change, OctWeights *weights, OctWeightsChange *scratch);
 void oct_weights_change_free(OctWeightsChange *scratch);
-size_t oct_weights_change_bytes(const OctWeightsChange *scratch);
 
 #endif

@@ -49,7 +49,6 @@ typedef struct {
 
 void oct_search_init(OctSearch *search, const OctTree *tree, const OctReach *reach);
 void oct_search_free(OctSearch *search);
-size_t oct_search_bytes(const OctSearch *search);
 
 /* Makes the scratch good for as many numbers, between searches. */
 void oct_search_grow(OctSearch *search, long nodes, long leaves, const int *below);

@@ -16,15 +16,6 @@ void oct_search_free(OctSearch *s)
     *s = (OctSearch){0};
 }
 
-size_t oct_search_bytes(const OctSearch *s)
-{
-    size_t leaf = sizeof *s->leaf + sizeof *s->distance + sizeof *s->held + sizeof *s->waiting +
-                  OCT_SOURCES * sizeof *s->member;
-    return (size_t)s->leaf_room * leaf + (size_t)s->inner_room * sizeof *s->inner +
-           (size_t)s->queue_room * sizeof *s->queue + (size_t)s->leaf_space * sizeof *s->leaf_at +
-           (size_t)s->node_space * sizeof *s->inner_at;
-}
-
 void oct_search_grow(OctSearch *s, long nodes, long leaves, const int *all_below)
 {
     s->below = all_below;

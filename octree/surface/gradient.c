@@ -216,14 +216,6 @@ void oct_gradients_build(const OctTree *tree, const OctGraph *graph, const unsig
     }
 }
 
-size_t oct_gradients_bytes(const OctGradients *gradients)
-{
-    size_t leaf = sizeof *gradients->leaf + sizeof *gradients->place + sizeof *gradients->span +
-                  sizeof *gradients->reach + sizeof *gradients->flat +
-                  sizeof *gradients->flat_place;
-    return sm_csr_bytes(&gradients->rows) + (size_t)gradients->room * leaf;
-}
-
 void oct_gradients_free(OctGradients *gradients)
 {
     sm_csr_free(&gradients->rows);

@@ -42,7 +42,6 @@ typedef struct {
 void oct_gradients_build(const OctTree *tree, const OctGraph *graph, const unsigned char *wanted,
                          double cell, OctGradients *gradients);
 void oct_gradients_free(OctGradients *gradients);
-size_t oct_gradients_bytes(const OctGradients *gradients); /* of what it holds; 0 of a zeroed one */
 
 /* Where tree and graph have changed: room for the tree's leaf numbers, of which new ones are not
  * wanted; then every leaf anew whose F is wanted though it was not, or whose edges have changed or

@@ -105,11 +105,3 @@ void oct_outline_free(OctOutline *o)
                 o->radius, o->mass);
     *o = (OctOutline){0};
 }
-
-long oct_outline_bytes(const OctOutline *o)
-{
-    long node = (long)(2 * sizeof(int) + sizeof *o->across + sizeof *o->x0 + sizeof *o->first +
-                       3 * sizeof(double));
-    return o->rest.nodes * node + o->leaves * (long)sizeof *o->of +
-           o->first[o->rest.nodes] * (long)(2 * sizeof(int));
-}

@@ -25,6 +25,5 @@ typedef struct {
  * join to it. O(leaves + edges); the caller frees. */
 void oct_outline_build(const OctStructure *structure, OctOutline *outline);
 void oct_outline_free(OctOutline *outline);
-long oct_outline_bytes(const OctOutline *outline);
 
 #endif

@@ -114,15 +114,6 @@ static void grow(OctSurface *surface, const SmMesh *mesh, const OctCarrier *carr
             find_centre(carrier, carrier->tree->leaf[node[n]], surface);
 }
 
-size_t oct_surface_bytes(const OctSurface *surface)
-{
-    size_t vertex = sizeof *surface->rest + sizeof *surface->normal + sizeof *surface->reach;
-    size_t leaf = sizeof *surface->centre + sizeof *surface->F + sizeof *surface->edges +
-                  sizeof *surface->users;
-    return sm_csr_bytes(&surface->rows) + oct_gradients_bytes(&surface->gradients) +
-           (size_t)surface->vertex_room * vertex + (size_t)surface->leaf_room * leaf;
-}
-
 void oct_surface_free(OctSurface *surface)
 {
     oct_gradients_free(&surface->gradients);

@@ -50,7 +50,6 @@ typedef struct {
  * material. The caller frees. */
 void oct_surface_build(const SmMesh *mesh, const OctCarrier *carrier, OctSurface *surface);
 void oct_surface_free(OctSurface *surface);
-size_t oct_surface_bytes(const OctSurface *surface); /* of what it holds; 0 of a zeroed one */
 
 /* Brings it up to date where tree, graph, cut and mesh have changed; what comes out is what
  * oct_surface_build() gives, but for the order of sums. `node` are the tree nodes of all leaves

@@ -91,13 +91,6 @@ void oct_mass_free(OctMass *mass)
     *mass = (OctMass){0};
 }
 
-size_t oct_mass_bytes(const OctMass *mass, const SmVoxels *voxels)
-{
-    if (!mass->cell) return 0;
-    return (size_t)voxels->cell_count * sizeof *mass->cell +
-           (size_t)voxels->size[1] * (size_t)voxels->size[2] * sizeof *mass->row_first;
-}
-
 static double material_of(const OctMass *mass, const OctTree *tree, const SmVoxels *voxels,
                           int node)
 {

@@ -20,7 +20,6 @@ typedef struct {
  * frees. */
 void oct_mass_init(OctMass *mass, const SmVoxels *voxels, const double *vertex, OctMassRule rule);
 void oct_mass_free(OctMass *mass);
-size_t oct_mass_bytes(const OctMass *mass, const SmVoxels *voxels);
 
 /* What a tree node weighs, always summed in the same order. O(1) where every cell weighs 1, else
  * O(cells). */

@@ -78,15 +78,6 @@ static void alloc_nodes(OctTree *tree, long nodes, long leaves)
     tree->node = sm_alloc((size_t)leaves, sizeof *tree->node);
 }
 
-size_t oct_tree_bytes(const OctTree *tree)
-{
-    size_t node = sizeof *tree->centre + sizeof *tree->size + sizeof *tree->parent +
-                  sizeof *tree->child + sizeof *tree->children + sizeof *tree->material +
-                  sizeof *tree->leaf;
-    return sizeof *tree + ((size_t)tree->levels + 2) * sizeof *tree->level_first +
-           (size_t)tree->nodes * node + (size_t)tree->leaves * sizeof *tree->node;
-}
-
 void oct_tree_free(OctTree *tree)
 {
     sm_free_all(tree->level_first, tree->centre, tree->size, tree->parent, tree->child,
@@ -327,14 +318,6 @@ void oct_levels_add(OctLevels *levels, int level, int node)
     OctLevel *to = &levels->level[level];
     sm_make_room(to->node, to->room, to->count + 1);
     to->node[to->count++] = node;
-}
-
-size_t oct_levels_bytes(const OctLevels *levels)
-{
-    size_t bytes = 0;
-    for (int l = 0; l <= OCT_MAX_LEVELS; l++)
-        bytes += (size_t)levels->level[l].room * sizeof *levels->level[l].node;
-    return bytes;
 }
 
 void oct_levels_free(OctLevels *levels)

@@ -51,9 +51,6 @@ void oct_tree_prune(const OctTree *whole, const unsigned char *split, OctTree *t
 
 void oct_tree_free(OctTree *tree);
 
-/* Memory of the tree. */
-size_t oct_tree_bytes(const OctTree *tree);
-
 /* The tree node of level `level`, or the leaf above it, that holds finest cell (i,j,k), or -1 if
  * there is none. The voxels say whether the finest cell itself is material: a coarser leaf holds
  * cells that are not. O(levels + log roots). */
@@ -147,8 +144,6 @@ typedef struct {
 /* Amortised O(1). */
 void oct_levels_add(OctLevels *levels, int level, int node);
 
-/* Memory of the lists. */
-size_t oct_levels_bytes(const OctLevels *levels);
 void oct_levels_free(OctLevels *levels);
 
 #endif

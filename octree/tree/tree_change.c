@@ -49,18 +49,6 @@ void oct_tree_change_free(OctTreeChange *c)
     *c = (OctTreeChange){0};
 }
 
-size_t oct_tree_change_bytes(const OctTreeChange *c)
-{
-    return (size_t)c->node_space * (sizeof *c->below + sizeof *c->place) +
-           (size_t)c->touched_room * sizeof *c->touched +
-           (size_t)c->waiting_room * sizeof *c->waiting +
-           (size_t)c->number_room * sizeof *c->number +
-           (size_t)c->added_room * sizeof *c->change.added +
-           (size_t)c->removed_room * sizeof *c->change.removed +
-           (size_t)(c->created_room + c->deleted_room + c->inner_room + c->outer_room) *
-               sizeof(OctNodeLevel);
-}
-
 /* The numbers that the last batch has freed can be used from now on. */
 static void begin_batch(OctTreeChange *c)
 {

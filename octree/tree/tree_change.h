@@ -75,7 +75,6 @@ typedef struct {
 /* Tree and voxels must stay where they are. O(nodes). The caller frees. */
 void oct_tree_change_init(OctTreeChange *change, OctTree *tree, const SmVoxels *voxels);
 void oct_tree_change_free(OctTreeChange *change);
-size_t oct_tree_change_bytes(const OctTreeChange *change);
 
 /* Split and merge as in structure.h; the first of a batch opens it. O(levels), and for cells that
  * are not full of material their finest cells / 64. */

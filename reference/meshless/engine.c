@@ -593,16 +593,11 @@ static void meshless_masses(SmEngine *engine, double *mass)
 
 static void meshless_count(SmEngine *engine, SmCounts *counts)
 {
-    size_t modes = (size_t)engine->elastic.motion.modes,
-           nodes = (size_t)engine->elastic.motion.nodes;
     *counts =
         (SmCounts){.particles = engine->count,
                    .regions = engine->elastic.motion.nodes,
                    .build_seconds = engine->elastic.field_seconds + engine->elastic.matrix_seconds +
                                     engine->elastic.mode_seconds + engine->elastic.skin_seconds};
-    size_t bytes = sizeof *engine + nodes * (6 * modes + 15) * sizeof(double) +
-                   (size_t)engine->all * 5 * sizeof(double[3]);
-    counts->bytes = (long)(bytes + ref_skin_bytes(&engine->elastic.skin));
 }
 
 static long meshless_region(SmEngine *engine, long p, long *member, long room)
@@ -741,16 +736,6 @@ static void frames_set_state(SmEngine *engine, const double *state)
     ref_motion_pose(motion);
 }
 
-static void frames_count(SmEngine *engine, SmCounts *counts)
-{
-    const RefElastic *elastic = &engine->elastic;
-    meshless_count(engine, counts);
-    size_t bytes =
-        (size_t)elastic->motion.nodes * (6 * (size_t)elastic->motion.modes + 12) * sizeof(double) +
-        (size_t)elastic->skin.count * 2 * sizeof(double[3]);
-    counts->bytes = (long)(bytes + ref_skin_bytes(&elastic->skin));
-}
-
 const SmEngineType ref_meshless_frames = {
     .name = "meshless",
     .precision = "double",
@@ -766,6 +751,6 @@ const SmEngineType ref_meshless_frames = {
     .get_state = frames_get_state,
     .set_state = frames_set_state,
     .masses = meshless_masses,
-    .count = frames_count,
+    .count = meshless_count,
     .region = meshless_region,
 };

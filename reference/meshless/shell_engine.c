@@ -453,16 +453,12 @@ static void shell_masses(SmEngine *engine, double *mass)
 static void shell_count(SmEngine *engine, SmCounts *counts)
 {
     const RefShellBody *body = &engine->body;
-    const RefWarp *warp = &body->sheet.warp;
     *counts = (SmCounts){
         .particles = engine->count,
-        .regions = warp->nodes,
+        .regions = body->sheet.warp.nodes,
         .stopped = body->broke,
         .build_seconds = body->map.seconds + body->matrix_seconds + body->skin_seconds,
-        .bytes = (long)(sizeof *engine + (size_t)warp->start[warp->cells] * sizeof *warp->slope +
-                        (size_t)warp->near[warp->nodes] * sizeof *warp->lean +
-                        (size_t)engine->count * 3 * sizeof *body->carried)};
-    counts->bytes += (long)ref_skin_bytes(&body->skin);
+    };
 }
 
 RefShellBody *ref_shell_body(SmEngine *engine)

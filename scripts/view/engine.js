@@ -6,7 +6,7 @@ const NAMES = { fastlsm: 'FastLSM', octree: 'Octree', meshless: 'Elastic body', 
 export const [ELASTIC, ABSENT] = [1, 2]; // of what a scene's text is (bench/view/stored_bodies.h)
 export const STAGES = ['fast sum', 'shape matching', 'polar', 'damping', 'other'];
 const FIGURES = [
-    'particles', 'regions', 'links', 'broken', 'contacts', 'summationNodes', 'bytes', 'buildMs', 'time',
+    'particles', 'regions', 'links', 'broken', 'contacts', 'summationNodes', 'buildMs', 'time',
     'steps', 'kinetic', 'momentum', 'cell', 'h', 'stepsPerFrame', 'pieces',
 ];
 const OBSTACLES = ['plane', 'sphere', 'box', 'capsule'];

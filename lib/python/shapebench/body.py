@@ -121,7 +121,7 @@ class Counts:
     links: int  # between neighbours, unbroken, of one instance
     broken: int
     contacts: int  # of the last step, but those with obstacles
-    bytes: int  # of memory that the engine holds
+    bytes: int  # of memory that making the engine took; 0: not known
     build_seconds: float  # that creation took
     summation_nodes: float  # mean per region; octree
     cut_triangles: int  # that its cut consists of

@@ -249,14 +249,6 @@ void ref_skin_place(const RefSkin *skin, const double (*moved)[3], const double 
         ref_frame_sums.place(skin, skin->block + b, moved, turned, position);
 }
 
-size_t ref_skin_bytes(const RefSkin *skin)
-{
-    size_t bytes = 0;
-    for (long b = 0; b < skin->blocks; b++)
-        bytes += (size_t)skin->block[b].nodes * (size_t)skin->block[b].room * sizeof(float);
-    return bytes;
-}
-
 void ref_skin_push(const RefSkin *skin, long place, const double push[3], double (*nodes)[3])
 {
     long low = 0, high = skin->blocks;

@@ -87,9 +87,6 @@ void ref_skin_free(RefSkin *skin);
 void ref_skin_place(const RefSkin *skin, const double (*moved)[3], const double (*turned)[3],
                     double (*position)[3]);
 
-/* Of the weights. */
-size_t ref_skin_bytes(const RefSkin *skin);
-
 /* Adds to the nodes what a push at the skin's point `place` does to them. O(log blocks + nodes). */
 void ref_skin_push(const RefSkin *skin, long place, const double push[3], double (*nodes)[3]);
 
