@@ -246,8 +246,7 @@ void ref_cracked_press(const RefCracked *cracked, double pressure, double (*forc
         ref_middle_press(&cracked->cell[c].samples, pressure, force);
 }
 
-/* Takes all samples and sums them up. Cells that `old` (or NULL) has samples of keep their areas.
- */
+/* Takes and sums up all samples. Cells that `old` (or NULL) has samples of keep their areas. */
 static void make_all(RefCracked *cracked, const RefSamples *old)
 {
     RefShell *shell = cracked->shell;
