@@ -11,7 +11,7 @@
  * it is more afterwards. */
 static inline long sm_heap_used(void)
 {
-#if defined __GLIBC__ && __GLIBC_PREREQ(2, 33)
+#if __GLIBC__ > 2 || __GLIBC_MINOR__ >= 33
     struct mallinfo2 heap = mallinfo2();
     return (long)(heap.uordblks + heap.hblkhd);
 #else
