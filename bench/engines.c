@@ -39,32 +39,6 @@ SmCode bench_engine_find(const char *name, const char *precision, const SmEngine
                    precision ? " precision" : "", known, bench_suggest_among(name, names, near));
 }
 
-const char *bench_engine_lacks(const BenchEngine *engine)
-{
-    const SmEngineType *const types[] = {engine->type[0], engine->type[1], engine->frames};
-    bool moved = engine->twin || engine->set_width;
-    const char *lacking = NULL;
-    if (!engine->type[0]) return "type";
-    for (int t = 0; t < 3 && !lacking; t++)
-        if (types[t]) lacking = sm_engine_lacks(types[t]);
-    for (int t = 0; t < TYPES && !lacking && moved; t++) {
-        const SmEngineType *type = types[t];
-        if (!type) continue;
-        lacking = !type->set      ? "set"
-                  : !type->goals  ? "goals"
-                  : !type->push   ? "push"
-                  : !type->bound  ? "bound"
-                  : !type->masses ? "masses"
-                  : !type->region ? "region"
-                                  : NULL;
-    }
-    return lacking            ? lacking
-           : !engine->carrier ? "carrier"
-           : !engine->checker ? "checker"
-           : !engine->memory  ? "memory"
-                              : NULL;
-}
-
 SmStage bench_stage_find(const char *name)
 {
     for (int e = 0; bench_engine_list[e]; e++)

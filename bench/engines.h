@@ -25,6 +25,8 @@ typedef struct BenchModes BenchModes;     /* play/mode.h */
 
 enum { BENCH_MOST_ENGINES = 16, BENCH_MOST_PLANNED = 4, BENCH_ENGINES_TEXT = 128 };
 
+/* carrier, checker and memory must be there; and set, goals, push, bound, masses and region of the
+ * types of an engine that has a twin or is planned, which is moved, held and weighed by it. */
 typedef struct {
     const SmEngineType *type[2]; /* one a precision, the default first; NULL: there is no other */
 
@@ -83,11 +85,6 @@ const BenchEngine *bench_engine(const char *name);
  * SM_USAGE lists what there is. */
 SmCode bench_engine_find(const char *name, const char *precision, const SmEngineType **type,
                          SmError *error);
-
-/* The first member of an engine, or of one of its types, that must be there and is not; NULL: it is
- * whole. carrier, checker and memory must; set, goals, push, bound, masses and region of the types
- * of engines that have a twin or are planned, which are moved, held and weighed by it. */
-const char *bench_engine_lacks(const BenchEngine *engine);
 
 /* The stage that any engine calls so; SM_STAGES if none does. */
 SmStage bench_stage_find(const char *name);

@@ -195,14 +195,17 @@ if(NOT SHAPEBENCH_SANITIZE AND NOT SHAPEBENCH_CORE)
     $<TARGET_FILE:shapebench_wheel_library> $<TARGET_FILE:shapebench_shared>)
   add_script_test(python_blender ../lib/python/blender/test_blender.py $<TARGET_FILE:shapebench_wheel_library>)
   add_script_test(page_sources view/test_sources.sh)
-  add_script_test(page view/run_tests.py $<TARGET_FILE:shapebench>)
-  set_tests_properties(page PROPERTIES TIMEOUT 2400) # without a graphics card it draws slowly
+  set(first test_page test_meshes test_tools) # its views and tools, and meshes that are dropped on it
+  add_script_test(page view/run_tests.py $<TARGET_FILE:shapebench> ${first})
+  add_script_test(page_more view/run_tests.py $<TARGET_FILE:shapebench> but ${first})
+  set_tests_properties(page page_more PROPERTIES TIMEOUT 2400 RESOURCE_LOCK page) # drawing by processor takes long
+  set_tests_properties(brute_force damage documents page_more scenes writers PROPERTIES LABELS long)
 endif()
 
 # These start first, of any instruction set and precision, those that take longest before the others, so
 # that none is alone in the end: about the seconds of each, of which sanitizers make more of some.
-set(long_150 page)
-set(long_100 scenes)
+set(long_150 page_more)
+set(long_100 page scenes)
 set(long_60 brute_force documents report render writers meshless_cracked meshless_multitorus bench_burst)
 set(long_20 bench_inside corpus damage bench_regress package python_module python_wheel lib_shape meshless_point_maps
   meshless_cracked_cylinders)

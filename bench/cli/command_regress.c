@@ -81,7 +81,6 @@ static const BenchSetting settings[] = {
          "counters", NULL, 2,
          "Also compare what the processor counted in a step: cycles, instructions, misses"),
      BENCH_IN(Options, counters)},
-    {BENCH_OPTION("counts", NULL, 2, "The same"), BENCH_IN(Options, counters)},
     {BENCH_OPTION("format", "FORMAT", 3, "text, markdown or json (default: text)"),
      BENCH_IN(Options, format), BENCH_CHOICES(bench_regression_formats)},
     {BENCH_OUTPUT_OPTION("FILE", 3, "Write there (default: standard output)"),

@@ -38,33 +38,6 @@ void sm_engine_pose(const SmEngineParams *params, long instance, double pose[3][
            sizeof identity);
 }
 
-const char *sm_engine_lacks(const SmEngineType *type)
-{
-    bool state = type->get_state || type->set_state;
-    bool shapes = type->get_shapes || type->set_shapes;
-    const struct {
-        bool there;
-        const char *name;
-    } must[] = {
-        {type->name, "name"},
-        {type->precision, "precision"},
-        {type->create, "create"},
-        {type->destroy, "destroy"},
-        {type->step, "step"},
-        {type->get, "get"},
-        {type->set || state, "set"},
-        {type->count, "count"},
-        {type->get_state || !state, "get_state"},
-        {type->set_state || !state, "set_state"},
-        {type->get_shapes || !shapes, "get_shapes"},
-        {type->set_shapes || !shapes, "set_shapes"},
-        {type->masses || !type->refines, "masses"},
-    };
-    for (size_t i = 0; i < sizeof must / sizeof *must; i++)
-        if (!must[i].there) return must[i].name;
-    return NULL;
-}
-
 const SmStages *sm_engine_stages(const SmEngineType *type)
 {
     return type->stages ? type->stages : &sm_matching_stages;

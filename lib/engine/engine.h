@@ -104,7 +104,7 @@ typedef struct SmEngine SmEngine;
 enum { SM_MOST_W = 31 };
 
 /* One engine in one precision. name, precision, create, destroy, step, get, count and either set or
- * get_state and set_state must be there (sm_engine_lacks()). Any other member may be NULL, of an
+ * get_state and set_state must be there. Any other member may be NULL, of an
  * engine that has nothing of the kind: callers refuse what needs it, or leave it out, as is said
  * there. */
 typedef struct {
@@ -216,10 +216,6 @@ typedef struct {
      * O(links), with no room O(particles). NULL of engines whose particles have none. */
     long (*links)(SmEngine *engine, int (*link)[2], long room);
 } SmEngineType;
-
-/* The first member that must be there and is not, "step" or "set_state"; NULL: the type is whole.
- */
-const char *sm_engine_lacks(const SmEngineType *type);
 
 /* Its stages; and its name of one, NULL if it has no such. */
 const SmStages *sm_engine_stages(const SmEngineType *type);

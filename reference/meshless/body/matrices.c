@@ -56,34 +56,6 @@ void ref_sparse_sums(const RefSparse *sparse, double *sum)
     free(one);
 }
 
-/* The entry of a column in a row of the lower half; NULL: none. */
-static double *entry_at(const RefSparse *sparse, int column, int row)
-{
-    int low = sparse->start[column], high = sparse->start[column + 1];
-    while (low < high) {
-        int middle = low + (high - low) / 2;
-        if (sparse->row[middle] == row) return sparse->value + middle;
-        if (sparse->row[middle] < row)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return NULL;
-}
-
-bool ref_matrices_spring(RefMatrices *matrices, const RefRows *rows, const double *stiffness)
-{
-    for (long r = 0; r < rows->count; r++)
-        for (long e = rows->start[r]; e < rows->start[r + 1]; e++)
-            for (long f = rows->start[r]; f < rows->start[r + 1]; f++) {
-                if (rows->column[f] < rows->column[e]) continue;
-                double *value = entry_at(&matrices->stiffness, rows->column[e], rows->column[f]);
-                if (!value) return false;
-                *value += stiffness[r] * rows->value[e] * rows->value[f];
-            }
-    return true;
-}
-
 /* Whether the cover of node n reaches into the box, by more than rounding. */
 static bool reaches(const RefNodes *nodes, int n, const double low[3], const double high[3])
 {

@@ -46,10 +46,4 @@ void ref_sparse_apply(const RefSparse *sparse, int width, const double *x, doubl
 /* The sums of its rows, [columns]: of a mass matrix what belongs to each node. */
 void ref_sparse_sums(const RefSparse *sparse, double *sum);
 
-/* Adds springs to the stiffness, that of row r times stiffness[r]. The row's parameters have to be
- * those of nodes that are partners, as nodes are that cover one point of the body. O(entries^2 of
- * each row, times the logarithm of a column's). False, and the matrix half changed, where they are
- * not. */
-bool ref_matrices_spring(RefMatrices *matrices, const RefRows *rows, const double *stiffness);
-
 #endif

@@ -1,9 +1,8 @@
 #include "shell.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include "../../../lib/vector.h"
 
 void ref_shell_free(RefShell *shell)
 {
@@ -57,19 +56,4 @@ bool ref_shell_at(const RefShell *shell, const double theta[3], RefShape *shape,
     if (!ref_shell_shape(shell, theta, shape)) return false;
     *frame = ref_middle_of((const double(*)[3])shell->X, shape);
     return true;
-}
-
-void ref_rows_lean(RefRows *rows, const RefShape *shape, const RefFrame *frame,
-                   const double direction[3])
-{
-    const double *g = frame->inverse, (*a)[3] = frame->tangent;
-    double along[2] = {sm_dot(a[0], direction), sm_dot(a[1], direction)};
-    double up[2] = {g[0] * along[0] + g[2] * along[1], g[2] * along[0] + g[1] * along[1]};
-    long at = ref_rows_begin(rows, 3 * shape->count);
-    for (int n = 0; n < shape->count; n++)
-        for (int d = 0; d < 3; d++, at++) {
-            rows->column[at] = 3 * shape->node[n] + d;
-            rows->value[at] =
-                -frame->normal[d] * (shape->gradient[n][0] * up[0] + shape->gradient[n][1] * up[1]);
-        }
 }

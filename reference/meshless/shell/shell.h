@@ -52,9 +52,4 @@ void ref_shell_free(RefShell *shell);
 int ref_shell_shape(const RefShell *shell, const double theta[3], RefShape *shape);
 bool ref_shell_at(const RefShell *shell, const double theta[3], RefShape *shape, RefFrame *frame);
 
-/* Appends a row: how far the normal leans along `direction` (of unit length) where functions and
- * frame were taken: -(a3 . u,k) a^k . direction, summed over k. */
-void ref_rows_lean(RefRows *rows, const RefShape *shape, const RefFrame *frame,
-                   const double direction[3]);
-
 #endif

@@ -70,6 +70,36 @@ static inline double bending_of(const RefShellOptions *options)
 /* How a side is held: not at its normal, by rows as on planes of symmetry, or clamped. */
 typedef enum { FREE_TO_LEAN, UPRIGHT, CLAMPED } Lean;
 
+/* Appends a row: how far the normal leans along `direction` (of unit length) where functions and
+ * frame were taken: -(a3 . u,k) a^k . direction, summed over k. */
+static inline void append_lean(RefRows *rows, const RefShape *shape, const RefFrame *frame,
+                               const double direction[3])
+{
+    const double *g = frame->inverse, (*a)[3] = frame->tangent;
+    double along[2] = {sm_dot(a[0], direction), sm_dot(a[1], direction)};
+    double up[2] = {g[0] * along[0] + g[2] * along[1], g[2] * along[0] + g[1] * along[1]};
+    long at = ref_rows_begin(rows, 3 * shape->count);
+    for (int n = 0; n < shape->count; n++)
+        for (int d = 0; d < 3; d++, at++) {
+            rows->column[at] = 3 * shape->node[n] + d;
+            rows->value[at] =
+                -frame->normal[d] * (shape->gradient[n][0] * up[0] + shape->gradient[n][1] * up[1]);
+        }
+}
+
+/* Adds a spring along the only row to the stiffness. */
+static inline void add_spring(const RefRows *row, double stiffness, const RefSparse *K)
+{
+    for (long e = row->start[0]; e < row->start[1]; e++)
+        for (long f = row->start[0]; f < row->start[1]; f++) {
+            int at = K->start[row->column[e]], end = K->start[row->column[e] + 1];
+            if (row->column[f] < row->column[e]) continue;
+            while (at < end && K->row[at] != row->column[f]) at++;
+            assert_true(at < end);
+            K->value[at] += stiffness * row->value[e] * row->value[f];
+        }
+}
+
 /* In the middle of the side (low 1, high 1, low 2, high 2) of every cell there: holds the axes that
  * `axes` is the bits of, and the normal across the side, clamped by springs of 10 D over the cell's
  * width, D the bending stiffness. */
@@ -92,13 +122,13 @@ static inline void hold_side(RefShell *shell, const RefShellOptions *options, in
             if (axes & 1u << d) ref_rows_displacement(rows, &shape, d);
         sm_cross(along, frame.normal, across);
         sm_normalize(across);
-        if (lean == UPRIGHT) ref_rows_lean(rows, &shape, &frame, across);
+        if (lean == UPRIGHT) append_lean(rows, &shape, &frame, across);
         if (lean != CLAMPED) continue;
         double length = edge[!axis] * sqrt(sm_dot(along, along));
         double width = edge[axis] * fabs(sm_dot(frame.tangent[axis], across));
         double stiffness = 10 * bending_of(options) / width * length;
-        ref_rows_lean(&slope, &shape, &frame, across);
-        assert_true(ref_matrices_spring(&shell->matrices, &slope, &stiffness));
+        append_lean(&slope, &shape, &frame, across);
+        add_spring(&slope, stiffness, &shell->matrices.stiffness);
         ref_rows_free(&slope);
     }
     ref_shape_free(&shape);
