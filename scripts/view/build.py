@@ -2,6 +2,7 @@
 """build.py - writes the page as one file that asks for nothing else, from this folder and the engines.
 
     build.py WASM OUT.html SCENE_TEXT_FILE MESH_FILE [BODY_FILE...]
+    build.py PAGE.html OUT.html SCENE_TEXT_FILE MESH_FILE            a page that is there, with another scene or mesh
 
 The page opens with that scene and its mesh, or drops a mesh alone; '' stands for none. It carries these elastic
 bodies (bench/view/store_body.c), and the licences of what is in it, which are beside WASM. It runs from file://, where
@@ -52,6 +53,12 @@ def build(wasm, scene, mesh, bodies, licences):
     return re.sub('|'.join(parts), lambda mark: parts[mark.group()], page)
 
 
+def reopen(page, scene, mesh):
+    """A page with this scene and mesh in place of its own."""
+    start, data, end = re.fullmatch('(.*<script id="data"[^>]*>)(.*?)(</script>.*)', page, re.DOTALL).groups()
+    return start + as_json({**json.loads(data), 'scene': scene, 'mesh': mesh}) + end
+
+
 def read(path, how):
     """What `how` makes of a file; '' of no file."""
     if not path:
@@ -81,10 +88,15 @@ def main(arguments):
     wasm, out = pathlib.Path(arguments[0]), pathlib.Path(arguments[1])
     scene = read(arguments[2], lambda path: path.read_text(encoding='utf-8'))
     mesh = read(arguments[3], read_mesh) or []
+    if wasm.suffix == '.html':
+        return write(out, reopen(wasm.read_text(encoding='utf-8'), scene, mesh))
     bodies = [read(path, read_body) for path in arguments[4:]]
     texts = [HERE.parents[1] / 'LICENSE', *filter(pathlib.Path.exists, (wasm.parent / name for name in LICENCES))]
     licences = [read(path, lambda at: at.read_text(encoding='utf-8').strip()) for path in texts]
-    page = build(wasm.read_bytes(), scene, mesh, bodies, licences)
+    return write(out, build(wasm.read_bytes(), scene, mesh, bodies, licences))
+
+
+def write(out, page):
     new = f'{out}.{os.getpid()}.tmp'
     try:
         pathlib.Path(new).write_text(page, encoding='utf-8')

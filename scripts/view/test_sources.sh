@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Where scripts/view/view looks for a library's sources: in every list of apt, made one of sources; and that it is
-# quiet where there are none. apt-get is a stand-in here.
+# quiet where there are none. apt-get is a stand-in here. And a page that is there opens with another mesh.
 #
 # usage: scripts/view/test_sources.sh     exit codes: 0 passed, 1 failed
 set -eu
@@ -31,3 +31,14 @@ for line in 'deb-src [trusted=yes] http://one.example a main' 'Types: deb-src' '
 done
 if bash "$folder/fetch" other lib/a.c 'lib/*.[ch]' >"$folder/said" 2>&1; then echo "there are no sources"; exit 1; fi
 [ "$(cat "$folder/said")" = 'fetching the sources of other' ] || { cat "$folder/said"; exit 1; }
+
+here=$(cd -- "$(dirname -- "$0")" && pwd)
+echo 'v 0 0 0' >"$folder/own.obj"
+python3 "$here/build.py" "$here/../../results/page.html" "$folder/own.html" '' "$folder/own.obj"
+python3 - "$folder/own.html" "$here/../../results/page.html" <<'PY' || { echo "more than the mesh is another"; exit 1; }
+import json, re, sys
+parts = re.compile('(.*"data"[^>]*>)(.*?)(</script>.*)', re.DOTALL)
+own, page = (parts.fullmatch(open(path).read()).groups() for path in sys.argv[1:])
+data = json.loads(own[1])
+sys.exit(data["mesh"][0]["name"] != "own.obj" or data["scene"] != "" or own[::2] != page[::2] or "bodies" not in data)
+PY
