@@ -77,6 +77,12 @@ static inline double oct_goal_list_bytes(const OctStepCounts *c)
     return 4 * (c->goal_entries + c->goal_prefix_entries) + 8 * (1 + c->goal_prefixes);
 }
 
+/* A node's lists, and its state, moments and transforms, some fifty values of `real` bytes. */
+static inline double oct_node_bytes(const OctStepCounts *c, double real)
+{
+    return oct_region_list_bytes(c) + oct_goal_list_bytes(c) + 50 * real;
+}
+
 /* Moments of the tree's nodes. First m~ x: reads x and m~, writes 3. */
 static inline SmOperations oct_depth_operations(const OctStepCounts *c)
 {

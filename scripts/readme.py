@@ -3,7 +3,7 @@
 
 usage: readme.py [WORD...]     only tables whose command has one of these words
 
-Leave the machine alone meanwhile, some five minutes; the table of scripts/check_systems.sh takes half an hour more,
+Leave the machine alone meanwhile, some five minutes; the table of scripts/check_systems.sh takes an hour more,
 as root. What is INVALID or BUSY is not taken: the table stays as it was.
 Exit codes: 0 done; 1 a table stays; 2 usage."""
 import os

@@ -11,7 +11,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "../../lib/system/heap.h"
 #include "../../octree/engine.h"
 #include "../system/statistic.h"
 #include "kernel.h"
@@ -31,7 +30,6 @@ typedef struct {
     int side;        /* leaves along an edge of the cube */
     int node[SPLIT]; /* of the leaves to be refined */
     SmCounts before;
-    long bytes;   /* that the engine took; 0: not known */
     long regions; /* made anew by the last change */
 } Cube;
 
@@ -80,9 +78,7 @@ static SmCode make_cube(const BenchKernel *kernel, const BenchKernelParams *para
     *cube = (Cube){.type = params->precision == BENCH_F64 ? &octree_engine_f64 : &octree_engine_f32,
                    .side = side};
     sm_voxels_block(&voxels, 2 * side, 2 * side, 2 * side, 1);
-    cube->bytes = -sm_heap_used();
     SmCode code = cube->type->create(&voxels, &own, &cube->engine, error);
-    cube->bytes += sm_heap_used();
     sm_voxels_free(&voxels);
     if (code) return code;
     cube->structure = oct_engine_structure(cube->engine);
@@ -214,7 +210,7 @@ static void report(BenchJob *job, BenchKernelRow *row)
     cube->type->count(cube->engine, &counts);
     job->own_ns = 1e9 * bench_quartiles(change->trial.cpu, change->trial.samples).median;
     job->least.far_bytes = (4 * counts.summation_nodes + 16) * (double)cube->regions; /* lists */
-    job->footprint = (double)cube->bytes;
+    job->footprint = (4 * counts.summation_nodes + 200) * (double)counts.particles;
     snprintf(row->note, sizeof row->note,
              "%.3g ms of CPU time: %d %s, in %ld nodes; %ld regions anew", job->own_ns / 1e6,
              cuts ? PARTED : SPLIT, cuts ? "edges cut" : "leaves split, then merged",

@@ -84,10 +84,9 @@ static void note_step(const BenchKernel *kernel, const BenchTreeStep *step, doub
         snprintf(note, room, "%.2f and %.2f entries a node", entries, goals);
         break;
     case BENCH_TREE_WHOLE:
-        snprintf(note, room, "%s%s%s%.1f ns a node; %.2f summation nodes; %.3g MB",
+        snprintf(note, room, "%s%s%s%.1f ns a node; %.2f summation nodes",
                  kernel->paper ? "paper: " : "", kernel->paper ? kernel->paper : "",
-                 kernel->paper ? "; " : "", ns_per_node, step->body->regions.mean,
-                 (double)step->bytes / 1e6);
+                 kernel->paper ? "; " : "", ns_per_node, step->body->regions.mean);
         break;
     }
 }
@@ -99,7 +98,7 @@ static void report_step(BenchJob *job, BenchKernelRow *row)
     double nodes = (double)body->structure.tree.leaves;
     job->least = work_of((BenchTreePart)job->kernel->part, &step->counts);
     if (is_body(job)) job->least = bench_tree_body_operations(body, job->least);
-    job->footprint = (double)step->bytes;
+    job->footprint = nodes * oct_node_bytes(&step->counts, job->precision == BENCH_F32 ? 4 : 8);
     note_step(job->kernel, step, is_body(job) ? row->ns / nodes : row->ns, row);
 }
 

@@ -5,7 +5,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "../../lib/system/heap.h"
 #include "../../octree/octree.h"
 #include "../../reference/octree_goals.h"
 #include "cubes.h"
@@ -139,9 +138,7 @@ static void create(BenchTreeStep *step)
                         .form = step->adjoint ? OCT_ADJOINT : OCT_HIERARCHICAL,
                         .damping = damping,
                         .threads = step->threads};
-    step->bytes = -sm_heap_used();
     Oct *oct = oct_build(&body->tree, &body->regions, body->mass, &params);
-    step->bytes += sm_heap_used();
     step->engine = oct;
     step->trial = (BenchTrial){.timed = {step, start, run_step},
                                .finite = finite_at_end,

@@ -32,7 +32,6 @@ typedef struct {
     unsigned long seed;
     /* found */
     OctStepCounts counts; /* of its lists */
-    long bytes;           /* that the engine took; 0: not known */
     void *engine;
     double (*x)[3], (*v)[3]; /* [leaves] where samples start */
 } BenchTreeStep;

@@ -301,8 +301,6 @@ void lsm_blocks_share(Lsm *lsm)
         box->held[t] = sm_alloc(2 * ((size_t)lsm->side + 1), sizeof(BlockRow));
         box->window[t] = sm_alloc(window_size(lsm), sizeof(real));
     }
-    long own = (long)(scratch_size(lsm) + window_size(lsm));
-    box->shared_bytes = (stores * most * 6 * SM_LANES + lsm->threads * own) * (long)sizeof(real);
 }
 
 void lsm_blocks_free(Blocks *box)

@@ -45,7 +45,6 @@ struct Blocks {
     real **down;        /* [planes] where a plane's (Q, Rz) sums are kept until phase 2 */
     real *down_memory;
     int threads;
-    long shared_bytes;
     real **scratch;  /* [threads] rows of one plane, and windows */
     BlockRow **held; /* [threads] what is in these rows (boxes.c) */
     real **window;   /* [threads] up, down: the z windows of a plane's places, [12] and [6] blocks

@@ -394,6 +394,7 @@ int sb_body_create(const sb_voxels *voxels, const sb_mesh *surface, const sb_bod
     made->bytes = -sm_heap_used();
     SmCode failed = type->create(&voxels->voxels, &inner, &made->engine, &why);
     made->bytes += sm_heap_used();
+    if (made->bytes < 0) made->bytes = 0; /* another thread has freed more */
     if (failed) {
         free(made);
         return sm_done(failed, &why, error);

@@ -367,11 +367,11 @@ typedef struct {
     int64_t regions; /* different ones of one instance; of meshless bodies and shells nodes */
     int64_t links;   /* between neighbours, unbroken, of one instance */
     int64_t broken;
-    int64_t contacts;       /* of the last step, but those with obstacles */
-    int64_t bytes;          /* of memory that making the engine took; 0: not known */
-    double build_seconds;   /* that creation took */
-    double summation_nodes; /* mean per region; octree */
-    int64_t cut_triangles;  /* that its cut consists of */
+    int64_t contacts; /* of the last step, but those with obstacles */
+    int64_t bytes;    /* of memory that all threads took while the engine was made; 0: not known */
+    double build_seconds;                        /* that creation took */
+    double summation_nodes;                      /* mean per region; octree */
+    int64_t cut_triangles;                       /* that its cut consists of */
     int64_t surface_vertices, surface_triangles; /* of one instance; both 0 without a surface */
     int surface_incomplete; /* 1: some of a cut could not be made in the surface, which crosses
                              * itself there; the material is cut all the same */

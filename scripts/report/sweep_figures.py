@@ -19,7 +19,7 @@ MAPS = [
      "The stiffness that w and epsilon give, on a beam of regular cells."),
     ("sag", 100, "sag", "Sag of a clamped beam's tip, percent of its length", "percent", True, "In the limit of small sags."),
     ("summation_nodes", 1, "summation", "Summation nodes of a region", "nodes", True, "Mean; a lattice has none."),
-    ("bytes", 1e-6, "memory", "Memory, megabytes", "megabytes", True, "Held by the engine."),
+    ("bytes", 1e-6, "memory", "Memory, megabytes", "megabytes", True, "That making the engine took."),
     ("build_seconds", 1e3, "build", "Set-up, milliseconds", "milliseconds", True, "Engine built from voxels."),
 ]
 

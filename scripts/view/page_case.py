@@ -1,6 +1,7 @@
 """What tests of the page share: one page, with the hand in it, in a real browser without a screen."""
 import atexit
 import functools
+import os
 import pathlib
 import shutil
 import subprocess
@@ -27,8 +28,9 @@ SIDES = ("fastlsm", "octree")
 
 
 def make_page(page, *what):
-    """Makes a page as a user does; where its packages are missing, the test is skipped."""
-    made = subprocess.run([HERE / "view", *what, "-o", page], stdin=subprocess.DEVNULL)
+    """Makes this clone's page as a user does; where its packages are missing, the test is skipped."""
+    made = subprocess.run([HERE / "view", *what, "-o", page], stdin=subprocess.DEVNULL,
+                          env={**os.environ, "SHAPEBENCH_PAGE_OF_CLONE": "1"})
     if made.returncode == 3:
         raise unittest.SkipTest("what the page is built with is not here")
     made.check_returncode()

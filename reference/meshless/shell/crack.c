@@ -11,8 +11,8 @@
 static const double TIP_REACH = 0.25;
 /* Pieces that meet others end this share of their length beyond them. */
 static const double OVERSHOOT = 1e-6;
-/* Of a side of the rectangle with its margin, in which pieces are looked up. */
-enum { BINS = 64 };
+/* This share of the rectangle's sides is looked at beyond what is asked for. */
+static const double LOOK_BEYOND = 1.0 / 64;
 
 static double cross(const double a[2], const double b[2])
 {
@@ -31,14 +31,13 @@ static double length_of(const double a[2])
 
 void ref_cracks_create(const RefChart *chart, double margin, RefCracks *cracks)
 {
-    *cracks = (RefCracks){.chart = chart, .margin = margin, .stale = true};
+    *cracks = (RefCracks){.chart = chart, .margin = margin, .low = {INFINITY}};
 }
 
 void ref_cracks_free(RefCracks *cracks)
 {
     ref_chart_images_free(&cracks->images);
-    sm_free_all(cracks->bin, cracks->binned, cracks->near.piece, cracks->near.box, cracks->mark,
-                cracks->piece, cracks->arm);
+    sm_free_all(cracks->near.piece, cracks->near.box, cracks->piece, cracks->arm);
     *cracks = (RefCracks){.chart = NULL};
 }
 
@@ -76,7 +75,7 @@ static void add_piece(RefCracks *cracks, int arm, const RefChartImage *at)
     RefCrackArm *of = cracks->arm + arm;
     RefCrackPiece piece = {.at = *at, .arm = arm, .previous = of->last};
     of->last = (int)cracks->pieces;
-    cracks->stale = true;
+    cracks->low[0] = INFINITY; /* nothing is in the box that was looked at */
     sm_make_room(cracks->piece, cracks->piece_room, cracks->pieces + 1);
     cracks->piece[cracks->pieces++] = piece;
 }
@@ -87,60 +86,6 @@ static void add_pieces(RefCracks *cracks, int arm, const double end[2][2])
     ref_chart_images(cracks->chart, end, cracks->margin, &cracks->images);
     for (long n = 0; n < cracks->images.count; n++)
         add_piece(cracks, arm, cracks->images.image + n);
-}
-
-/* The bins that a box touches: from bin[d] to bin[2 + d]. What is beyond the margin is in the
- * outermost. */
-static void bins_of(const RefCracks *cracks, const double low[2], const double high[2], int bin[4])
-{
-    const RefChart *chart = cracks->chart;
-    for (int d = 0; d < 2; d++) {
-        double from = chart->low[d] - cracks->margin;
-        double unit = (chart->high[d] + cracks->margin - from) / BINS;
-        bin[d] = (int)fmin(fmax((low[d] - from) / unit, 0), BINS - 1);
-        bin[2 + d] = (int)fmin(fmax((high[d] - from) / unit, 0), BINS - 1);
-    }
-}
-
-static void bins_of_piece(const RefCracks *cracks, const RefCrackPiece *piece, int bin[4])
-{
-    double low[2], high[2];
-    box_of(piece, low, high);
-    bins_of(cracks, low, high, bin);
-}
-
-/* Room for marks of all pieces. */
-static void make_marks(RefCracks *cracks)
-{
-    long words = sm_room_for(cracks->pieces / 64);
-    if (cracks->pieces / 64 < cracks->mark_room) return;
-    cracks->mark = sm_widen(cracks->mark, cracks->mark_room, words, sizeof *cracks->mark, 0);
-    cracks->mark_room = words;
-}
-
-/* Sorts pieces into bins. */
-static void bin_pieces(RefCracks *cracks)
-{
-    int box[4];
-    if (!cracks->bin) cracks->bin = sm_alloc(BINS * BINS + 1, sizeof *cracks->bin);
-    memset(cracks->bin, 0, (BINS * BINS + 1) * sizeof *cracks->bin);
-    for (int pass = 0; pass < 2; pass++) {
-        for (long p = cracks->pieces - 1; p >= 0; p--) { /* backwards: each bin's rise in the end */
-            bins_of_piece(cracks, cracks->piece + p, box);
-            for (int j = box[1]; j <= box[3]; j++)
-                for (int i = box[0]; i <= box[2]; i++)
-                    if (pass == 0)
-                        cracks->bin[BINS * j + i]++;
-                    else
-                        cracks->binned[--cracks->bin[BINS * j + i]] = (int)p;
-        }
-        if (pass) break;
-        for (int n = 0; n < BINS * BINS; n++) cracks->bin[n + 1] += cracks->bin[n];
-        sm_make_room(cracks->binned, cracks->bin_room, cracks->bin[BINS * BINS]);
-    }
-    make_marks(cracks);
-    cracks->stale = false;
-    cracks->low[0] = INFINITY; /* nothing is in this box */
 }
 
 static bool meet(const double box[2][2], const double low[2], const double high[2])
@@ -163,30 +108,13 @@ static void note(const RefCracks *cracks, int p, const double low[2], const doub
     if (meet((const double(*)[2])own, low, high)) near->piece[near->count++] = p;
 }
 
-/* Takes all pieces whose boxes touch a box, rising. A piece is in several bins. */
-static void gather(RefCracks *cracks, const double low[2], const double high[2])
-{
-    int box[4];
-    bins_of(cracks, low, high, box);
-    memcpy(cracks->low, low, sizeof cracks->low);
-    memcpy(cracks->high, high, sizeof cracks->high);
-    for (int j = box[1]; j <= box[3] && cracks->pieces; j++) {
-        long from = cracks->bin[BINS * j + box[0]], end = cracks->bin[BINS * j + box[2] + 1];
-        for (long n = from; n < end; n++)
-            cracks->mark[cracks->binned[n] / 64] |= UINT64_C(1) << cracks->binned[n] % 64;
-    }
-    cracks->near.count = 0;
-    for (long word = 0; 64 * word < cracks->pieces; word++)
-        for (; cracks->mark[word]; cracks->mark[word] &= cracks->mark[word] - 1)
-            note(cracks, (int)(64 * word) + __builtin_ctzll(cracks->mark[word]), low, high,
-                 &cracks->near);
-}
-
 bool ref_cracks_look(const RefCracks *cracks, const double low[2], const double high[2])
 {
     RefCracks *look = (RefCracks *)cracks;
-    if (look->stale) bin_pieces(look);
-    gather(look, low, high);
+    memcpy(look->low, low, sizeof look->low);
+    memcpy(look->high, high, sizeof look->high);
+    look->near.count = 0;
+    for (long p = 0; p < cracks->pieces; p++) note(cracks, (int)p, low, high, &look->near);
     return look->near.count > 0;
 }
 
@@ -194,7 +122,7 @@ bool ref_cracks_look(const RefCracks *cracks, const double low[2], const double 
  * looked at last, or one about them that is three times as wide. */
 static const RefCracksNear *near_to(const RefCracks *cracks, const double a[2], const double b[2])
 {
-    bool inside = !cracks->stale;
+    bool inside = true;
     double low[2], high[2];
     for (int d = 0; d < 2; d++) {
         low[d] = a[d] < b[d] ? a[d] : b[d];
@@ -202,8 +130,8 @@ static const RefCracksNear *near_to(const RefCracks *cracks, const double a[2], 
         inside = inside && low[d] >= cracks->low[d] && high[d] <= cracks->high[d];
     }
     for (int d = 0; !inside && d < 2; d++) {
-        double bin = (cracks->chart->high[d] - cracks->chart->low[d]) / BINS;
-        double wide = high[d] - low[d] + bin;
+        double side = cracks->chart->high[d] - cracks->chart->low[d];
+        double wide = high[d] - low[d] + LOOK_BEYOND * side;
         low[d] -= wide;
         high[d] += wide;
     }

@@ -46,12 +46,8 @@ typedef struct {
     long pieces, piece_room, arms, arm_room;
     RefCrackPiece *piece;   /* [pieces] */
     RefCrackArm *arm;       /* [arms] */
-    bool stale;             /* private, as is the rest: pieces are not in these bins yet */
-    int *bin, *binned;      /* where each bin's pieces begin, and their numbers */
-    double low[2], high[2]; /* a box, and */
+    double low[2], high[2]; /* private, as is the rest: a box, and */
     RefCracksNear near;     /* all pieces whose boxes touch it */
-    uint64_t *mark;         /* [pieces / 64] bits of those that are gathered; none in between */
-    long bin_room, mark_room;
     RefChartImages images;
 } RefCracks;
 
@@ -84,8 +80,8 @@ bool ref_cracks_end_ahead(const RefCracks *cracks, int arm, double far);
 /* Ends an arm: nothing gets across any more near where its tip was. */
 void ref_cracks_end(RefCracks *cracks, int arm);
 
-/* What gets from `from` to x of a weight of this reach: RefCut's pass() for nodes.h. Pieces are
- * looked up in bins. Not for several threads at a time. O(pieces near). */
+/* What gets from `from` to x of a weight of this reach: RefCut's pass() for nodes.h. Not for
+ * several threads at a time. O(pieces near; in another box than before, all pieces). */
 bool ref_cracks_pass(const void *cracks, const double x[3], const double from[3], double reach,
                      double part[6]);
 

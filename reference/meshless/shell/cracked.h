@@ -1,5 +1,5 @@
-/* cracked.h - a thin shell with cracks (meshless section 4.2): when cracks change all functions and
- * matrices are made anew.
+/* cracked.h - a thin shell with cracks (meshless section 4.2): when cracks change, all functions
+ * and matrices are made anew.
  *
  * Cells whose node gets too little from its own cover are split into four, with a node each, and
  * others to keep the tree balanced; those whose covers reach a zero of a plane of cylinders are
@@ -71,7 +71,7 @@ typedef struct {
     double **residual; /* [2] of the first two, likewise, or NULL at first */
 } RefCrackedFields;
 
-/* After cracks were grown: makes all of them anew. A field's nodes
+/* After cracks were grown: makes all functions and matrices anew. A field's nodes
  * keep their parameters, and new ones have what the field was there; what is left of the old field
  * is written to `residual`, so that displacements + K^-1 residual and velocities + M^-1 residual
  * are its projections in the norms of both energies, which are no longer than the field was

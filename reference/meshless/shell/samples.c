@@ -181,8 +181,9 @@ void ref_samples_work_free(RefSamplesWork *work)
 
 SM_ISA_TABLE(RefCellFunctions, ref_cell_functions)
 
-bool ref_samples_reached(const double at[2][REF_GRID_SIDE], const double node[2], double reach,
-                         int first[2], RefGrid *grid)
+/* Of a grid those that a node's cover reaches; false: none. */
+static bool reached(const double at[2][REF_GRID_SIDE], const double node[2], double reach,
+                    int first[2], RefGrid *grid)
 {
     for (int d = 0; d < 2; d++) {
         int begin = 0, end = ALONG;
@@ -232,7 +233,7 @@ static bool weigh(const double at[2][ALONG], const RefSamplesWork *work, long n,
     RefGrid grid;
     double spline[2][3][ALONG] = {{{0}}}, part[REF_SAMPLES_PER_CELL][6];
     const double *node = nodes->position[n], reach = nodes->reach[n];
-    if (!ref_samples_reached(at, node, reach, first, &grid)) return false;
+    if (!reached(at, node, reach, first, &grid)) return false;
     for (int d = 0; d < 2; d++)
         for (int i = first[d]; i < first[d] + grid.count[d]; i++) {
             double slope[2];

@@ -76,10 +76,6 @@ void ref_samples_of(const RefQuadtree *tree, long cell, double edge, RefSamplesW
 /* The samples' coordinates along both axes of a cell. */
 void ref_samples_grid(const RefQuadtree *tree, long cell, double at[2][REF_GRID_SIDE]);
 
-/* Of these those that a node's cover reaches; false: none. */
-bool ref_samples_reached(const double at[2][REF_GRID_SIDE], const double node[2], double reach,
-                         int first[2], RefGrid *grid);
-
 /* The shape functions at a place of a cell whose edge is `edge`; between cracks of the first of a
  * quadratic, linear and constant basis that is defined there and varies no faster than the cell can
  * bear, or the last without derivatives; at a place on a crack as one beside it sees them. Returns
