@@ -30,10 +30,13 @@ def start(width, height, own_session=False):
 
 
 def ask(driver, body, *values):
-    """What the body of an asynchronous function returns, in the page; raises Refused."""
+    """What the body of an asynchronous function returns, in the page; raises Refused. On a busy machine a page is
+    there before its modules have run."""
     answer = driver.execute_async_script(
         "const done = arguments[arguments.length - 1], values = [...arguments].slice(0, -1);"
-        f"(async () => {{ {body} }})().then((value) => done({{ value }}), "
+        "const soon = () => new Promise((go) => setTimeout(go, 100));"
+        "(async () => { while (document.getElementById('wasm') && !globalThis.shapebench) await soon();"
+        f"{body} }})().then((value) => done({{ value }}), "
         "(error) => done({ error: String(error.stack || error) }))", *values)
     if "error" in answer:
         raise Refused(answer["error"])

@@ -17,7 +17,7 @@ class LiveReport(PageCase):
     def go_back(self):
         self.driver.get("about:blank")
         self.driver.get(self.page)
-        self.ask("await shapebench.ready; shapebench.pause()")
+        self.ask("shapebench.pause()")
 
     def test_a_button_opens_its_scene(self):
         scene, rows, report = self.folder / "mine.cfg", self.folder / "rows.h5", self.folder / "report.html"

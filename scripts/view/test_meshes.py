@@ -136,7 +136,7 @@ class Meshes(PageCase):
         self.assertIn("does not carry the mesh", said)
         self.driver.get("about:blank")
         self.driver.get(link)
-        said = self.ask("await shapebench.ready; shapebench.pause(); "
+        said = self.ask("shapebench.pause(); "
                         "return document.getElementById('status').textContent")
         self.assertIn("'of scene.obj' is not in this page", said)
         self.assertEqual(self.drop(("of scene.obj", OBJ)), "")
@@ -186,13 +186,13 @@ class Meshes(PageCase):
         for _ in range(2):
             self.driver.get("about:blank")
             self.driver.get(address)
-            text, said = self.ask("await shapebench.ready; shapebench.pause(); return [shapebench.text(), "
+            text, said = self.ask("shapebench.pause(); return [shapebench.text(), "
                                   "document.getElementById('status').textContent]")
             self.assertIn(part, text)
             self.assertEqual(said[:len(says) or None], says)
             address = self.copy_link()[0]
         self.driver.get(before)
-        self.ask("await shapebench.ready; shapebench.pause()")
+        self.ask("shapebench.pause()")
 
     def copy_link(self):
         """The link, and what is said of it."""

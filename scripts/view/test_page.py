@@ -109,7 +109,7 @@ class Page(PageCase):
                         "await new Promise((done) => setTimeout(done, 300)); return location.href")
         self.driver.get("about:blank")
         self.driver.get(link)
-        self.ask("await shapebench.ready; shapebench.pause()")
+        self.ask("shapebench.pause()")
         self.assertIn("w = 3;", self.ask("return shapebench.text()"))
         said = self.ask("location.hash = '#scene=zzzz'; await new Promise((done) => setTimeout(done, 300)); "
                         "return document.getElementById('status').textContent")
