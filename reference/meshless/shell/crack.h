@@ -13,7 +13,6 @@
 #ifndef REF_CRACK_H
 #define REF_CRACK_H
 
-#include <stdint.h>
 
 #include "chart.h"
 
