@@ -17,8 +17,7 @@
 void ref_foot_skin(const RefShell *shell, const RefWarp *warp, long count, const double (*theta)[2],
                    const double (*x)[3], RefSkin *skin, long *loose);
 
-/* The same of a shell that cracks, after an update. Points are numbered as when the skin was made.
- */
+/* The same of a shell that cracks, after an update; points are numbered as they were. */
 void ref_foot_renew(const RefCracked *cracked, const RefWarp *warp, const double (*theta)[2],
                     const double (*x)[3], RefSkin *skin, long *loose);
 
