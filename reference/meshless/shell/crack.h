@@ -13,7 +13,6 @@
 #ifndef REF_CRACK_H
 #define REF_CRACK_H
 
-
 #include "chart.h"
 
 /* A straight piece of an arm, or an image of one. */
