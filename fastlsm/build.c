@@ -323,7 +323,7 @@ static void build_rows(Lsm *lsm)
         .bar = sm_alloc(bars * ROW_BAR, real_size),
         .plate = sm_alloc(plates * ROW_PLATE, real_size),
         .transform = sm_alloc(rows * ROW_T, real_size),
-        .plate_down = sm_alloc(plates * (size_t)(lsm->sums->plate_down), real_size),
+        .plate_down = sm_alloc(plates * ROW_PLATE_DOWN, real_size),
     };
 }
 
@@ -552,16 +552,16 @@ static void free_regions(Lsm *lsm)
     lsm_interior_free(&lsm->interior);
     lsm_lists_free(&lsm->lists);
     if (lsm->allocator) lsm_allocator_free(lsm->allocator);
-    if (lsm->running_lists) lsm_running_lists_free(lsm->running_lists);
+    lsm_running_free(lsm->running);
     lsm_fixups_free(lsm->fixups);
     if (lsm->box && !lsm->fixups) free(lsm->block_region);
     for (int t = 0; lsm->group_rows && t < lsm->threads; t++) free(lsm->group_rows[t]);
     const Rows *rows = &lsm->rows;
     sm_free_all(rows->p, rows->bar, rows->plate, rows->transform, rows->plate_down);
-    sm_free_all(lsm->allocator, lsm->running_lists, lsm->running_factor, lsm->tile_slot,
-                lsm->layer_tile, lsm->copy, lsm->layer_copy, lsm->members, lsm->block_const,
-                lsm->particle_const, lsm->tile_const, lsm->region_const, lsm->centre, lsm->last,
-                lsm->sweeps, lsm->stretch, lsm->live, lsm->group_rows);
+    sm_free_all(lsm->allocator, lsm->tile_slot, lsm->layer_tile, lsm->copy, lsm->layer_copy,
+                lsm->members, lsm->block_const, lsm->particle_const, lsm->tile_const,
+                lsm->region_const, lsm->centre, lsm->last, lsm->sweeps, lsm->stretch, lsm->live,
+                lsm->group_rows);
 }
 
 /* The last rotation of every region, by the slot of its centre. */

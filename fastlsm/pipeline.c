@@ -47,6 +47,22 @@ void lsm_pipeline_own(const Lsm *lsm, int phase, int thread, int *begin, int *en
     }
 }
 
+int lsm_pipeline_stores(const Lsm *lsm, int phase, int *store)
+{
+    int turns = 2 * lsm->reach + 1, stores = 0;
+    for (int t = 0; t < lsm->threads; t++) {
+        int begin, end;
+        lsm_pipeline_own(lsm, phase, t, &begin, &end);
+        if (begin > 0) begin += lsm->reach;
+        if (end < lsm->layers) end -= lsm->reach;
+        int ring = stores;
+        stores += turns;
+        for (int l = lsm->thread_layer[t]; l < lsm->thread_layer[t + 1]; l++)
+            store[l] = l < begin || l >= end ? stores++ : ring + l % turns;
+    }
+    return stores;
+}
+
 static void run_own(Lsm *lsm, LsmPhase *const phase[3], int thread, SmLaps *laps)
 {
     int first = lsm->thread_layer[thread], last = lsm->thread_layer[thread + 1];

@@ -15,10 +15,11 @@
 
 #include "state.h"
 
-#define lsm_pipeline       SM_NAME(lsm_pipeline)
-#define lsm_pipeline_own   SM_NAME(lsm_pipeline_own)
-#define lsm_pipeline_split SM_NAME(lsm_pipeline_split)
-#define lsm_pipeline_share SM_NAME(lsm_pipeline_share)
+#define lsm_pipeline        SM_NAME(lsm_pipeline)
+#define lsm_pipeline_own    SM_NAME(lsm_pipeline_own)
+#define lsm_pipeline_stores SM_NAME(lsm_pipeline_stores)
+#define lsm_pipeline_split  SM_NAME(lsm_pipeline_split)
+#define lsm_pipeline_share  SM_NAME(lsm_pipeline_share)
 
 /* `laps` is NULL but for the first thread of an instrumented run. */
 typedef void LsmPhase(Lsm *lsm, int layer, int thread, SmLaps *laps);
@@ -34,5 +35,11 @@ void lsm_pipeline_split(Lsm *lsm);
 
 /* Of a body whose layers wait for no other: shares layers first .. end - 1, which alone are run. */
 void lsm_pipeline_share(Lsm *lsm, int first, int end);
+
+/* Where what phase `phase - 1` leaves of each layer is kept for phase `phase`: store[layers], and
+ * returns how many there are. A store is free for another layer once that phase has passed `reach`
+ * layers on: in the middle of a thread's share layers take turns; near its ends, where the phase
+ * waits for another thread, each has its own. */
+int lsm_pipeline_stores(const Lsm *lsm, int phase, int *store);
 
 #endif

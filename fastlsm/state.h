@@ -20,7 +20,6 @@
 #include "../lib/engine/integrate.h"
 #include "../lib/simd/lanes.h"
 #include "lattice/list_allocator.h"
-#include "lattice/running_lists.h"
 
 typedef struct {
     vec inverse_mass, offset[3]; /* 1 / M_r; c0_r - x0_r in cells */
@@ -38,14 +37,7 @@ typedef struct {
 
 /* Widths of the rows of list sums, in values. Vectors are padded to four, rows to whole cache lines
  * where they are read whole. */
-enum {
-    ROW_P = 4,
-    ROW_BAR = 16,
-    ROW_PLATE = 16,
-    ROW_T = 16,
-    ROW_PLATE_DOWN = 8,
-    ROW_PLATE_RUN = 16
-};
+enum { ROW_P = 4, ROW_BAR = 16, ROW_PLATE = 16, ROW_T = 16, ROW_PLATE_DOWN = 8 };
 
 typedef struct {
     real *p;          /* [slots + 1][ROW_P]          m~ x */
@@ -53,19 +45,20 @@ typedef struct {
                                                      (Q, R z, R y), as the plates are done with it */
     real *plate;      /* [plates][ROW_PLATE]         .. and of b p */
     real *transform;  /* [slots + 1][ROW_T]          (q_r, R z, R y, R x) */
-    real *plate_down; /* [plates][ROW_PLATE_DOWN]    (Q, R z); running [ROW_PLATE_RUN],
-                                                     with R y for the rows made from it */
+    real *plate_down; /* [plates][ROW_PLATE_DOWN]    (Q, R z) */
+    long first;       /* slot of row 1 of p and transform */
 } Rows;
 
 /* Damping keeps its products in `transform`, and then (omega, v_r - omega x c_r) in their place; it
  * sums through the same bars and plates. */
 
-/* Row 0 of every array is zero (the absent member), slot s is row s + 1. */
+/* Row 0 of every array is zero (the absent member), slot s is row s - first + 1. */
 
-typedef struct LsmPass LsmPass; /* what is summed, and what for: sums.h */
-typedef struct LsmSums LsmSums; /* a form of the sums: sums.h */
-typedef struct Blocks Blocks;   /* box sums: blocks.h */
-typedef struct Fixups Fixups;   /* of box sums: box_sum_fixups.h */
+typedef struct LsmPass LsmPass;       /* what is summed, and what for: sums.h */
+typedef struct LsmSums LsmSums;       /* a form of the sums: sums.h */
+typedef struct Blocks Blocks;         /* box sums: blocks.h */
+typedef struct Fixups Fixups;         /* of box sums: box_sum_fixups.h */
+typedef struct LsmRunning LsmRunning; /* running_sums.c */
 
 typedef struct Lsm {
     /* the body */
@@ -77,12 +70,10 @@ typedef struct Lsm {
     LsmLattice lattice;
     LsmInterior interior;
     LsmLists lists;
-    LsmListAllocator *allocator;    /* NULL for a body that cannot break */
-    LsmRunningLists *running_lists; /* in place of the lists of `lists`, or NULL; a region's base is
-                          a row of rows.transform */
-    real (*running_factor)[2];      /* [LSM_FACTORS] */
-    long spare;                     /* rows that its layers have left at least */
-    char *mark;                     /* [particles] zero between breaks, or NULL */
+    LsmListAllocator *allocator; /* NULL for a body that cannot break */
+    LsmRunning *running;         /* in place of the lists of `lists` and of `rows`, or NULL */
+    long spare;                  /* rows that its layers have left at least */
+    char *mark;                  /* [particles] zero between breaks, or NULL */
     double *mass; /* [particles] in units of mass_unit kg, their mean; NULL: all are 1 */
     double mass_unit;
     int *members;  /* [particles] |R_i|, kept in a body that can break */

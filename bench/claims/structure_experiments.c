@@ -40,17 +40,13 @@ static double listed(const int *row, long rows, int side)
     return (double)count;
 }
 
-static double terms(const LsmRunningList *list)
-{
-    return list->first[list->rows];
-}
-
 /* Additions for the sums over all regions through bars and plates, or each made of a neighbour's:
- * the members and terms of the lists that the engine would have. */
+ * the members of the lists that the engine would have. */
 static double list_additions(Regions *of, bool running)
 {
     const LsmLattice *lattice = &of->lattice;
     const int layer_plane[] = {0, lattice->size[2]};
+    const long layer_slot[] = {0};
     int *slot = sm_alloc((size_t)lattice->count, sizeof *slot);
     for (int p = 0; p < lattice->count; p++) slot[p] = p;
     LsmListsBuilder *builder = lsm_lists_open(lattice, slot, of->w);
@@ -65,8 +61,9 @@ static double list_additions(Regions *of, bool running)
                  listed(lists.plate, lists.plate_count, of->side) +
                  listed(lists.region, lists.region_count, of->side);
     if (running) {
-        lsm_running_lists_build(lattice, &lists, 1, layer_plane, &runs);
-        sum = terms(&runs.bar) + terms(&runs.plate) + terms(&runs.region);
+        lsm_running_lists_build(lattice, slot, &lists, 1, layer_plane, layer_slot, &runs);
+        sum = (double)(lsm_running_additions(&runs.bar) + lsm_running_additions(&runs.plate) +
+                       lsm_running_additions(&runs.region));
         lsm_running_lists_free(&runs);
     }
     lsm_lists_free(&lists);

@@ -293,53 +293,96 @@ static void sum_list(const int *list, int side, const int *value, long *sum, lon
     }
 }
 
-/* A row's base, as running_lists.h says, moved on and with its terms. */
-static void assert_running_row(const LsmRunningList *running, const int *list, int side, long r,
-                               const int *value)
+/* Of one kind of rows: their lists, which count from row 0 and name some of `members`; the first
+ * row, and the first member, of each plane. */
+typedef struct {
+    const int *list;
+    int side, planes;
+    long rows, count, members, *first, *member; /* count: rows that are made */
+    bool along_z;
+} Kind;
+
+/* What `row` of plane z says of a member's place and name: its value. */
+static long value_at(const Kind *kind, const int *value, int z, int place, int name)
 {
-    double factor[LSM_FACTORS][2];
-    long sum = 0, moment = 0, want, want_moment, base = running->base[r] / 2;
-    lsm_running_factors(side / 2, factor);
-    if (base) sum_list(list + base * side, side, value, &sum, &moment);
-    if (running->base[r] % 2) moment -= sum;
-    assert_true(running->first[r + 1] > running->first[r]);
-    assert_int_equal((running->first[r + 1] - running->first[r]) % 2, 0);
-    for (int t = running->first[r]; t < running->first[r + 1]; t++) {
-        const LsmTerm *term = &running->term[t];
-        sum += (long)factor[term->factor][0] * value[term->row];
-        moment += (long)factor[term->factor][1] * value[term->row];
-    }
-    sum_list(list + r * side, side, value, &want, &want_moment);
-    assert_int_equal(sum, want);
-    assert_int_equal(moment, want_moment);
+    int plane = kind->along_z ? z + place - kind->side / 2 - 1 : z;
+    return name ? value[name / LSM_NAME + kind->member[plane] - 1] : 0;
 }
 
-/* Every row is what its base makes of it, and no run is longer than it may be; returns how many
- * rows have a base. `list` counts from row 0, and its rows name some of `members`. */
-static long assert_running(unsigned *seed, const LsmRunningList *running, const int *list, int side,
-                           long members)
+/* A record sums what its row's list does, if its base, at most LSM_RUN_MOST rows down, does.
+ * Returns the row. */
+static long assert_record(const Kind *kind, int z, LsmGroup group, const int *record,
+                          const int *value, int *length)
 {
-    long based = 0;
-    int *value = sm_alloc((size_t)members, sizeof *value);
-    int *length = sm_alloc((size_t)running->rows, sizeof *length);
-    for (long i = 1; i < members; i++) value[i] = random_int(seed, 2001) - 1000;
-    for (long r = 1; r < running->rows; r++) {
-        long base = running->base[r] / 2;
-        assert_running_row(running, list, side, r, value);
-        assert_true(base < r);
-        length[r] = length[base] + 1; /* of none: 0 */
-        assert_true(length[r] <= LSM_RUN_MOST);
-        based += base > 0;
+    long sum = 0, moment = 0, want, want_moment, r = record[0] / LSM_NAME + kind->first[z] - 1;
+    int w = kind->side / 2, moved = group.way == LSM_MOVED || record[1] % LSM_NAME;
+    if (group.way != LSM_LISTED) {
+        long base = record[1] / LSM_NAME + kind->first[z] - 1;
+        assert_true(length[base] > 0);
+        length[r] = length[base] + 1;
+        sum_list(kind->list + base * kind->side, kind->side, value, &sum, &moment);
+        moment -= moved * sum;
+    } else {
+        length[r] = 1;
     }
+    int members = group.way == LSM_LISTED  ? group.times
+                  : group.way == LSM_MOVED ? 2
+                                           : 4 * group.times;
+    for (int i = 0; i < members; i++) {
+        const int *name = record + 2 + (group.way == LSM_CHANGED ? i / 4 * 5 + i % 4 : i);
+        int place = group.way == LSM_LISTED  ? record[1] + i
+                    : group.way == LSM_MOVED ? (i ? 0 : kind->side)
+                                             : record[2 + i / 4 * 5 + 4] >> i % 4 * 8 & 255;
+        long sign = group.way != LSM_LISTED && i % 2 ? -1 : 1,
+             own = sign * value_at(kind, value, z, place, *name);
+        sum += own;
+        moment += (place - w - 1) * own;
+    }
+    sum_list(kind->list + r * kind->side, kind->side, value, &want, &want_moment);
+    assert_int_equal(sum, want);
+    assert_int_equal(moment, want_moment);
+    assert_true(length[r] <= LSM_RUN_MOST);
+    return r;
+}
+
+/* Every row is made once; returns how many have a base. */
+static long assert_running(unsigned *seed, const LsmRunningList *running, const Kind *kind)
+{
+    long based = 0, made = 0;
+    int *value = sm_alloc((size_t)kind->members, sizeof *value);
+    int *length = sm_alloc((size_t)kind->rows, sizeof *length);
+    for (long i = 1; i < kind->members; i++) value[i] = random_int(seed, 2001) - 1000;
+    for (int z = 0; z < kind->planes; z++)
+        for (long g = running->plane[z]; g < running->plane[z + 1]; g++) {
+            LsmGroup group = running->group[g];
+            int width = lsm_record_width(group.way, group.times);
+            for (long i = 0; i < group.count; i++, made++)
+                assert_record(kind, z, group, running->record + group.first + i * width, value,
+                              length);
+            based += group.way == LSM_LISTED ? 0 : group.count;
+        }
+    assert_int_equal(made, kind->count);
     sm_free_all(value, length);
     return based;
 }
 
-static void assert_same_layers(const Listed *b, const LsmRunningList *running, const long *plane)
+/* Of the regions of layers: their rows are slots, which count from each layer's first. */
+static long assert_running_regions(unsigned *seed, const Listed *b, const LsmRunningList *running,
+                                   const long *layer_slot)
 {
-    for (int l = 0; l < b->layers; l++)
-        for (long r = plane[b->layer_plane[l]]; r < plane[b->layer_plane[l + 1]]; r++)
-            if (running->base[r]) assert_true(running->base[r] / 2 >= plane[b->layer_plane[l]]);
+    const LsmLists *l = &b->lists;
+    long rows = b->slot[b->lattice.count - 1] + 2;
+    int planes = l->planes, *list = sm_alloc((size_t)(rows * b->side), sizeof *list);
+    long *first = sm_alloc((size_t)planes, sizeof *first);
+    for (long p = 0; p < l->region_count; p++)
+        memcpy(list + (b->slot[p] + 1) * b->side, l->region + p * b->side,
+               (size_t)b->side * sizeof *list);
+    for (int z = 0; z < planes; z++) first[z] = layer_slot[layer_of(b, z)] + 1;
+    Kind region = {list,           b->side, planes,         rows, l->region_count,
+                   l->plate_count, first,   l->plate_plane, true};
+    long based = assert_running(seed, running, &region);
+    sm_free_all(list, first);
+    return based;
 }
 
 TEST(running_lists_sum_what_lists_do)
@@ -351,26 +394,31 @@ TEST(running_lists_sum_what_lists_do)
         LsmRunningLists running;
         listed_open(&seed, trial % 7, 2 + trial / 7, 1, &b);
         const LsmLists *l = &b.lists;
-        int *region = sm_alloc((size_t)((b.regions + 1) * b.side), sizeof *region);
-        memcpy(region + b.side, l->region, (size_t)(b.regions * b.side) * sizeof *region);
-        lsm_running_lists_build(&b.lattice, l, b.layers, b.layer_plane, &running);
-        assert_int_equal(running.bar.rows, l->bar_count);
-        assert_int_equal(running.plate.rows, l->plate_count);
-        assert_int_equal(running.region.rows, b.regions + 1);
-        based +=
-            assert_running(&seed, &running.bar, l->bar, b.side, b.slot[b.lattice.count - 1] + 2);
-        based += assert_running(&seed, &running.plate, l->plate, b.side, l->bar_count);
-        based += assert_running(&seed, &running.region, region, b.side, l->plate_count);
-        assert_same_layers(&b, &running.bar, l->bar_plane);
-        assert_same_layers(&b, &running.plate, l->plate_plane);
-        for (long p = 0; p < b.regions; p++)
-            if (running.region.base[p + 1])
-                assert_int_equal(
-                    layer_of(&b, b.lattice.coord[running.region.base[p + 1] / 2 - 1][2]),
-                    layer_of(&b, b.lattice.coord[p][2]));
-        rows += running.bar.rows + running.plate.rows + running.region.rows;
+        long *slots = sm_alloc((size_t)l->planes, sizeof *slots),
+             *layer_slot = sm_alloc((size_t)b.layers, sizeof *layer_slot);
+        for (long p = b.lattice.count; p-- > 0;)
+            layer_slot[layer_of(&b, b.lattice.coord[p][2])] = b.slot[p];
+        for (int z = 0; z < l->planes; z++) slots[z] = layer_slot[layer_of(&b, z)] + 1;
+        lsm_running_lists_build(&b.lattice, b.slot, l, b.layers, b.layer_plane, layer_slot,
+                                &running);
+        Kind bar = {l->bar,
+                    b.side,
+                    l->planes,
+                    l->bar_count,
+                    l->bar_count - 1,
+                    b.slot[b.lattice.count - 1] + 2,
+                    l->bar_plane,
+                    slots,
+                    false},
+             plate = {
+                 l->plate,     b.side,         l->planes,    l->plate_count, l->plate_count - 1,
+                 l->bar_count, l->plate_plane, l->bar_plane, false};
+        based += assert_running(&seed, &running.bar, &bar) +
+                 assert_running(&seed, &running.plate, &plate) +
+                 assert_running_regions(&seed, &b, &running.region, layer_slot);
+        rows += l->bar_count + l->plate_count + l->region_count;
         lsm_running_lists_free(&running);
-        free(region);
+        sm_free_all(slots, layer_slot);
         listed_free(&b);
     }
     assert_true(2 * based > rows);

@@ -263,14 +263,11 @@ static void free_shared(Blocks *box)
     free(box->down_memory);
 }
 
-/* A plane's store is free for another plane once phase 2 has passed `reach` planes on: in the
- * middle of a thread's share planes take turns; near its ends, where phase 2 waits for the other
- * thread, each has its own. */
 void lsm_blocks_share(Lsm *lsm)
 {
     Blocks *box = lsm->box;
-    int planes = lsm->layers, turns = 2 * lsm->reach + 1;
-    long most = 0, stores = 0;
+    int planes = lsm->layers;
+    long most = 0;
     free_shared(box);
     box->threads = lsm->threads;
     int *store = sm_alloc((size_t)planes, sizeof(int));
@@ -278,16 +275,7 @@ void lsm_blocks_share(Lsm *lsm)
         long blocks = lsm->layer_block[z + 1] - lsm->layer_block[z];
         most = blocks > most ? blocks : most;
     }
-    for (int t = 0; t < lsm->threads; t++) {
-        int begin, end;
-        lsm_pipeline_own(lsm, 2, t, &begin, &end);
-        if (begin > 0) begin += lsm->reach;
-        if (end < planes) end -= lsm->reach;
-        long ring = stores;
-        stores += turns;
-        for (int z = lsm->thread_layer[t]; z < lsm->thread_layer[t + 1]; z++)
-            store[z] = (int)(z < begin || z >= end ? stores++ : ring + z % turns);
-    }
+    int stores = lsm_pipeline_stores(lsm, 2, store);
     box->down = sm_alloc((size_t)planes, sizeof *box->down);
     box->down_memory = sm_alloc((size_t)stores * (size_t)most * 6 * SM_LANES, sizeof(real));
     for (int z = 0; z < planes; z++)

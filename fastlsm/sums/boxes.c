@@ -356,7 +356,7 @@ static __attribute__((noinline)) void mend_regions(const Lsm *lsm, long block, b
     }
     const int *region = lsm->block_region + block * SM_LANES; /* whose lanes replace box sums */
     vec listed[12];
-    lsm_list_kernels_regions(lsm, region, plain, listed);
+    lsm_list_kernels_regions(lsm, &lsm->rows, region, plain, listed);
     ivec lanes = listed_lanes(region);
     for (int i = 0; i < 12; i++) sum[i] = lanes_select(lanes, listed[i], sum[i]);
 }
@@ -367,7 +367,7 @@ static __attribute__((noinline)) void keep_down(const Lsm *lsm, long block, cons
     if (lsm->fixups)
         lsm_fixups_keep(lsm, block, down);
     else
-        lsm_lists_keep_down(lsm, block, down);
+        lsm_lists_keep_down(lsm, &lsm->rows, block, down);
 }
 
 /* The stage up along y for a column: 9 -> 12 values, of damping 12. */
@@ -631,7 +631,7 @@ static __attribute__((noinline)) void mend_particles(const Lsm *lsm, long block,
                                                      vec *sum)
 {
     if (!lsm->fixups)
-        lsm_list_kernels.block(lsm, block, plain, sum);
+        lsm_list_kernels.block(lsm, &lsm->rows, block, plain, sum);
     else if (plain)
         lsm_fixup_velocities(lsm, block, sum);
     else
@@ -699,7 +699,7 @@ static void solve(Lsm *lsm, int plane, int thread, SmLaps *laps)
 {
     static LsmPhase *const by_width[2][WIDTHS] = {SOLVE(solve_moments), SOLVE(solve_plain)};
     by_width[lsm->pass->plain][lsm->w < WIDTHS ? lsm->w : 0](lsm, plane, thread, laps);
-    lsm_list_kernels.subsums_down(lsm, plane, lsm->pass->plain);
+    lsm_list_kernels.subsums_down(lsm, &lsm->rows, plane, lsm->pass->plain);
     sm_lap(laps, lsm->pass->stage);
 }
 
@@ -723,5 +723,4 @@ const LsmSums lsm_sums_boxes = {
     .share = lsm_blocks_share,
     .phase = {subsums, solve, end},
     .lists = &lsm_list_kernels,
-    .plate_down = ROW_PLATE_DOWN,
 };

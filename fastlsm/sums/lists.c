@@ -19,7 +19,8 @@ void lsm_lists_build_layers(Lsm *lsm)
     long held = 0;
     for (int z = 0; z < planes; z++) {
         held += count[z];
-        bool high = z + 1 - lsm->layer_plane[lsm->layers] >= lsm->sums->layer_planes;
+        int least = lsm->sums->layer_planes > lsm->w ? lsm->sums->layer_planes : lsm->w;
+        bool high = z + 1 - lsm->layer_plane[lsm->layers] >= least;
         if ((held >= LAYER_PARTICLES && high) || z == planes - 1) {
             lsm->layer_plane[++lsm->layers] = z + 1;
             held = 0;
@@ -55,20 +56,31 @@ void lsm_lists_lay_out(Lsm *lsm)
     for (p = 0; p < n; p++) lsm->particle[lsm->slot[p]] = (int)p;
 }
 
+/* Its rows, for one of the threads. */
+static Rows rows_of(const Lsm *lsm, int layer, int thread)
+{
+    return lsm->running ? lsm_running_rows(lsm, layer, thread) : lsm->rows;
+}
+
+static long slot_row(const Rows *rows, long slot)
+{
+    return slot - rows->first + 1;
+}
+
 /* Rows of m~ x. */
-static void weigh(const Lsm *lsm, long block)
+static void weigh(const Lsm *lsm, const Rows *rows, long block)
 {
     vec weight = lsm->particle_const[lsm->block_const[block]].weight;
     vec p[4] = {[3] = lanes_set(0)};
     load3(lsm->x + block * 3 * SM_LANES, p);
     for (int d = 0; d < 3; d++) p[d] *= weight;
     lanes_interleave(p, 4);
-    real *row = lsm->rows.p + (block * SM_LANES + 1) * ROW_P;
+    real *row = rows->p + slot_row(rows, block * SM_LANES) * ROW_P;
     for (int i = 0; i < 4; i++) lanes_store(row + i * SM_LANES, p[i]);
 }
 
 /* Rows of damping's products. */
-static void weigh_products(const Lsm *lsm, long block)
+static void weigh_products(const Lsm *lsm, const Rows *rows, long block)
 {
     vec part[4], field[16] = {{0}};
     real *row[SM_LANES];
@@ -78,27 +90,27 @@ static void weigh_products(const Lsm *lsm, long block)
         for (int k = 0; k < 4; k++) field[3 * k + d] = part[k];
     }
     for (int lane = 0; lane < SM_LANES; lane++)
-        row[lane] = lsm->rows.transform + (block * SM_LANES + lane + 1) * ROW_T;
+        row[lane] = rows->transform + slot_row(rows, block * SM_LANES + lane) * ROW_T;
     lanes_to_rows(field, row);
 }
 
 void lsm_lists_subsums(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
-    (void)thread;
+    Rows rows = rows_of(lsm, layer, thread);
     bool plain = lsm->pass->plain;
     for (long block = lsm->layer_block[layer]; block < lsm->layer_block[layer + 1]; block++) {
         if (lsm->listed && !lsm->listed[block]) continue;
         if (plain)
-            weigh_products(lsm, block);
+            weigh_products(lsm, &rows, block);
         else
-            weigh(lsm, block);
+            weigh(lsm, &rows, block);
     }
-    lsm->sums->lists->subsums_up(lsm, layer, plain);
+    lsm->sums->lists->subsums_up(lsm, &rows, layer, plain);
     sm_lap(laps, lsm->pass->stage);
 }
 
 /* (q, R z, R y, R x), padded to four. */
-static void keep_transforms(const Lsm *lsm, long tile, const real *down)
+static void keep_transforms(const Lsm *lsm, const Rows *rows, long tile, const real *down)
 {
     static const int triple[4] = {0, 1, 3, 2};
     vec field[16];
@@ -108,13 +120,13 @@ static void keep_transforms(const Lsm *lsm, long tile, const real *down)
             i % 4 < 3 ? lanes_load(down + (3 * triple[i / 4] + i % 4) * SM_LANES) : lanes_set(0);
     for (int lane = 0; lane < SM_LANES; lane++) {
         int slot = lsm->tile_slot[tile * SM_LANES + lane];
-        row[lane] = slot < 0 ? nobodys : lsm->rows.transform + (slot + 1) * (long)ROW_T;
+        row[lane] = slot < 0 ? nobodys : rows->transform + slot_row(rows, slot) * ROW_T;
     }
     lanes_to_rows(field, row);
 }
 
 /* (omega, v_r - omega x c_r), padded to four. */
-static void keep_velocities(const Lsm *lsm, long tile, const real *down)
+static void keep_velocities(const Lsm *lsm, const Rows *rows, long tile, const real *down)
 {
     vec field[8];
     for (int i = 0; i < 8; i++)
@@ -124,28 +136,28 @@ static void keep_velocities(const Lsm *lsm, long tile, const real *down)
     for (int lane = 0; lane < SM_LANES; lane++) {
         int slot = lsm->tile_slot[tile * SM_LANES + lane];
         if (slot >= 0)
-            half_store(lsm->rows.transform + (slot + 1) * (long)ROW_T, half_load(row + lane * 8));
+            half_store(rows->transform + slot_row(rows, slot) * ROW_T, half_load(row + lane * 8));
     }
 }
 
-void lsm_lists_keep_down(const Lsm *lsm, long tile, const real *down)
+void lsm_lists_keep_down(const Lsm *lsm, const Rows *rows, long tile, const real *down)
 {
     if (lsm->pass->plain)
-        keep_velocities(lsm, tile, down);
+        keep_velocities(lsm, rows, tile, down);
     else
-        keep_transforms(lsm, tile, down);
+        keep_transforms(lsm, rows, tile, down);
 }
 
 /* A region identical to another has its rotation, or its rigid velocity; of a transform the centre
  * differs. */
-static void copy_regions(const Lsm *lsm, int layer, bool plain)
+static void copy_regions(const Lsm *lsm, const Rows *rows, int layer, bool plain)
 {
     for (long i = lsm->layer_copy[layer]; i < lsm->layer_copy[layer + 1]; i++) {
         int to = lsm->copy[i][0], from = lsm->copy[i][1];
         const int *a = lsm->lattice.coord[lsm->particle[to]],
                   *b = lsm->lattice.coord[lsm->particle[from]];
-        real *out = lsm->rows.transform + (to + 1) * (long)ROW_T;
-        const real *in = lsm->rows.transform + (from + 1) * (long)ROW_T;
+        real *out = rows->transform + slot_row(rows, to) * ROW_T;
+        const real *in = rows->transform + slot_row(rows, from) * ROW_T;
         if (plain) {
             half_store(out, half_load(in));
             continue;
@@ -158,35 +170,36 @@ static void copy_regions(const Lsm *lsm, int layer, bool plain)
 
 void lsm_lists_solve(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
-    (void)thread;
+    Rows rows = rows_of(lsm, layer, thread);
     const LsmListKernels *lists = lsm->sums->lists;
     const LsmPass *pass = lsm->pass;
     vec sum[POLAR_TILES][12];
     real down[POLAR_TILES * TILE_DOWN] __attribute__((aligned(64)));
-    if (lists->regions) lists->regions(lsm, layer, pass->plain);
+    if (lists->regions) lists->regions(lsm, &rows, layer, pass->plain);
     long tile = lsm->layer_tile[layer], end = lsm->layer_tile[layer + 1];
     for (; tile < end; tile += POLAR_TILES) {
         int tiles = end - tile < POLAR_TILES ? (int)(end - tile) : POLAR_TILES;
-        for (int t = 0; t < tiles; t++) lists->tile(lsm, tile + t, pass->plain, sum[t]);
+        for (int t = 0; t < tiles; t++) lists->tile(lsm, &rows, tile + t, pass->plain, sum[t]);
         lsm_solve(lsm, pass->plain, layer, tile, tiles, sum, down, laps);
-        for (int t = 0; t < tiles; t++) lsm_lists_keep_down(lsm, tile + t, down + t * TILE_DOWN);
+        for (int t = 0; t < tiles; t++)
+            lsm_lists_keep_down(lsm, &rows, tile + t, down + t * TILE_DOWN);
         lsm_solved(pass->plain, laps);
     }
-    copy_regions(lsm, layer, pass->plain);
+    copy_regions(lsm, &rows, layer, pass->plain);
     lsm_solved(pass->plain, laps);
-    lists->subsums_down(lsm, layer, pass->plain);
+    lists->subsums_down(lsm, &rows, layer, pass->plain);
     sm_lap(laps, pass->stage);
 }
 
 void lsm_lists_end(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
-    (void)thread;
+    Rows rows = rows_of(lsm, layer, thread);
     const LsmListKernels *lists = lsm->sums->lists;
     const LsmPass *pass = lsm->pass;
-    if (lists->particles) lists->particles(lsm, layer, pass->plain);
+    if (lists->particles) lists->particles(lsm, &rows, layer, pass->plain);
     for (long block = lsm->layer_block[layer]; block < lsm->layer_block[layer + 1]; block++) {
         vec sum[1][6] = {{{0}}};
-        lists->block(lsm, block, pass->plain, sum[0]);
+        lists->block(lsm, &rows, block, pass->plain, sum[0]);
         lsm_end(lsm, pass->plain, block, 1, sum, laps);
     }
     sm_lap(laps, pass->stage);

@@ -7,6 +7,8 @@
 #include "sums.h"
 
 #define lsm_lists_build_layers   SM_NAME(lsm_lists_build_layers)
+#define lsm_running_rows         SM_NAME(lsm_running_rows)
+#define lsm_running_free         SM_NAME(lsm_running_free)
 #define lsm_lists_lay_out        SM_NAME(lsm_lists_lay_out)
 #define lsm_lists_subsums        SM_NAME(lsm_lists_subsums)
 #define lsm_lists_solve          SM_NAME(lsm_lists_solve)
@@ -29,15 +31,20 @@ void lsm_lists_build_layers(Lsm *lsm);
 /* Particles in canonical order, in slots without holes but at the ends of layers. */
 void lsm_lists_lay_out(Lsm *lsm);
 
+/* A layer's rows, in the scratch of a thread (running_sums.c). */
+Rows lsm_running_rows(const Lsm *lsm, int layer, int thread);
+void lsm_running_free(LsmRunning *running);
+
 /* The three phases: bars and plates; regions, and bars and plates down; particles. */
 LsmPhase lsm_lists_subsums, lsm_lists_solve, lsm_lists_end;
 
-/* Puts what the regions of a tile bring down (LsmPass) into their rows of rows.transform. */
-void lsm_lists_keep_down(const Lsm *lsm, long tile, const real *down);
+/* Puts what the regions of a tile bring down (LsmPass) into their rows of rows->transform. */
+void lsm_lists_keep_down(const Lsm *lsm, const Rows *rows, long tile, const real *down);
 
 /* Through bars and plates (list_sums.c), and its sums of the regions listed in rows region[lane],
  * zero where that is negative. */
 extern const LsmListKernels lsm_list_kernels;
-void lsm_list_kernels_regions(const Lsm *lsm, const int *region, bool plain, vec sum[12]);
+void lsm_list_kernels_regions(const Lsm *lsm, const Rows *rows, const int *region, bool plain,
+                              vec sum[12]);
 
 #endif

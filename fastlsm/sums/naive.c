@@ -66,37 +66,37 @@ static bool applies(const Lsm *lsm)
     return lsm->params.summation == SM_SUM_NAIVE;
 }
 
-static void subsums_up(const Lsm *lsm, int layer, bool plain)
+static void subsums_up(const Lsm *lsm, const Rows *rows, int layer, bool plain)
 {
-    if (plain) lsm_list_kernels.subsums_up(lsm, layer, plain);
+    if (plain) lsm_list_kernels.subsums_up(lsm, rows, layer, plain);
 }
 
-static void subsums_down(const Lsm *lsm, int layer, bool plain)
+static void subsums_down(const Lsm *lsm, const Rows *rows, int layer, bool plain)
 {
-    if (plain) lsm_list_kernels.subsums_down(lsm, layer, plain);
+    if (plain) lsm_list_kernels.subsums_down(lsm, rows, layer, plain);
 }
 
-static void tile_sums(const Lsm *lsm, long tile, bool plain, vec sum[12])
+static void tile_sums(const Lsm *lsm, const Rows *rows, long tile, bool plain, vec sum[12])
 {
     if (plain) {
-        lsm_list_kernels.tile(lsm, tile, plain, sum);
+        lsm_list_kernels.tile(lsm, rows, tile, plain, sum);
         return;
     }
-    Row rows[SM_LANES];
+    Row made[SM_LANES];
     const real *row[SM_LANES];
     int region[SM_LANES];
     tile_regions(lsm, tile, region);
     for (int lane = 0; lane < SM_LANES; lane++) {
-        rows[lane] = region[lane] < 0 ? (Row){0} : region_up(lsm, region[lane]);
-        row[lane] = (const real *)&rows[lane];
+        made[lane] = region[lane] < 0 ? (Row){0} : region_up(lsm, region[lane]);
+        row[lane] = (const real *)&made[lane];
     }
     sums_of_rows(row, false, sum);
 }
 
-static void block_sums(const Lsm *lsm, long block, bool plain, vec sum[6])
+static void block_sums(const Lsm *lsm, const Rows *rows, long block, bool plain, vec sum[6])
 {
     if (plain) {
-        lsm_list_kernels.block(lsm, block, plain, sum);
+        lsm_list_kernels.block(lsm, rows, block, plain, sum);
         return;
     }
     const int *region = lsm->block_region + block * SM_LANES;
@@ -117,5 +117,4 @@ const LsmSums lsm_sums_naive = {
     .phase = {lsm_lists_subsums, lsm_lists_solve, lsm_lists_end},
     .lists = &kernels,
     .layer_planes = 1,
-    .plate_down = ROW_PLATE_DOWN,
 };

@@ -1,140 +1,208 @@
 /* running_sums.c - the sums over running lists (running_lists.h): O(1) a row for any shape.
  *
- * A row's sum stays where the rows made from it find it: bars and plates in their own rows, regions
- * and, on the way down, particles in rows.transform, which holds nothing else meanwhile. */
+ * Memory is what takes time here, so little is kept: of a layer m~ x and transforms, of a plane its
+ * bars, in scratch of the thread that works on them; plates until the layers around are done with
+ * them. A row's sum stays where the rows made from it find it. */
 #include <stdlib.h>
+#include <string.h>
 
+#include "../lattice/running_lists.h"
 #include "list_rows.h"
 #include "lists.h"
 
 /* Measured: below it, lists are faster. */
-enum { RUN_LEAST_W = SM_REAL_BITS == 32 ? 5 : 4, WIDTH = 16 };
+enum { RUN_LEAST_W = 3, ROW = 16 };
 
-/* Where a kind of row takes its moments from and adds them to, in vectors of four. */
-typedef enum { NONE, UP, DOWN } Moments;
-typedef struct {
-    const real *in;
-    int in_width, vectors; /* values apart, and vectors of four to read */
-    real *out;
-    Moments moments;
-    int from, to;
-} Level;
+static real none[ROW] __attribute__((aligned(64)));
 
-/* One row of a running, in two halves, into `out`: its base, moved on, and its terms. */
-SM_INLINE void running_row(const Lsm *lsm, const LsmRunningList *running, long row, Level level,
-                           real *out)
+struct LsmRunning {
+    LsmRunningLists lists;
+    real place[LSM_MAX_SIDE + 1]; /* -w-1 .. w */
+    Rows *rows;                   /* [threads] */
+    int threads;
+    /* a plane's plates, up and down, row 0 first; from plane -w-1 to w behind the last, all of
+     * whose rows are `none` */
+    real **plate[2], *memory[2];
+};
+
+Rows lsm_running_rows(const Lsm *lsm, int layer, int thread)
 {
-    const real *base = level.out + (long)(running->base[row] / 2) * WIDTH;
-    HalfRow sum[2] = {0};
-    vec4 moment = {0};
-    if (level.moments != NONE)
-        moment -= (real)(running->base[row] & 1) * load4(base + 4 * level.from);
-    const LsmTerm *term = running->term + running->first[row],
-                  *end = running->term + running->first[row + 1];
-    do {
-        for (int i = 0; i < 2; i++, term++) {
-            const real *member = level.in + (long)term->row * level.in_width,
-                       *factor = lsm->running_factor[term->factor];
-            if (level.vectors == 1)
-                sum[0] = half_add_four(sum[0], 0, factor[0] * load4(member));
-            else
-                sum[0] = half_add_times(sum[0], factor[0], half_load(member));
-            if (level.vectors == 4)
-                sum[1] = half_add_times(sum[1], factor[0], half_load(member + 8));
-            if (level.moments != NONE) moment += factor[1] * load4(member + 4 * level.from);
-        }
-    } while (term < end);
-    HalfRow *to = &sum[level.to / 2];
-    if (level.moments == UP) *to = half_add_four(*to, level.to % 2, moment);
-    if (level.moments == DOWN) *to = half_add_four(*to, level.to % 2, -moment);
-    /* what is large last: it is rounded once */
-    half_store(out, half_add(half_load(base), sum[0]));
-    half_store(out + 8, half_add(half_load(base + 8), sum[1]));
+    Rows rows = lsm->running->rows[thread];
+    rows.first = lsm->layer_block[layer] * SM_LANES;
+    return rows;
 }
 
-/* Bars or plates `first` .. `last` - 1. */
-SM_INLINE void running_rows(const Lsm *lsm, const LsmRunningList *running, long first, long last,
+SM_INLINE real *made_at(Level level, int name)
+{
+    return (real *)named(level.out, (uint64_t)name, ROW);
+}
+
+SM_INLINE vec4 moment_of(Level level, const real *base)
+{
+    return level.moments == NO_MOMENTS ? (vec4){0} : load4(base + 4 * level.from);
+}
+
+SM_INLINE void rows_moved(const int *record, long count, int w, Level level)
+{
+    for (; count > 0; count--, record += 4) {
+        const real *base = made_at(level, record[1]);
+        Sum sum = difference(level, (real)w, member_at(level, 2 * w + 1, (uint64_t)record[2]),
+                             (real)(-w - 1), member_at(level, 0, (uint64_t)record[3]));
+        sum.moment -= moment_of(level, base);
+        sum_store(sum, level, base, made_at(level, record[0]));
+    }
+}
+
+SM_INLINE void rows_changed(const int *record, long count, int times, const real *place, int w,
                             Level level)
 {
-    for (long row = first; row < last; row++)
-        running_row(lsm, running, row, level, level.out + row * WIDTH);
-}
-
-/* Regions around, or sums over, the particles of a layer. */
-SM_INLINE void running_slots(const Lsm *lsm, int layer, Level level)
-{
-    const LsmRunningList *running = &lsm->running_lists->region;
-    for (long slot = lsm->layer_block[layer] * SM_LANES;
-         slot < lsm->layer_block[layer + 1] * SM_LANES && lsm->particle[slot] >= 0; slot++) {
-        running_row(lsm, running, lsm->particle[slot] + 1, level, level.out + (slot + 1) * WIDTH);
+    while (count-- > 0) {
+        int row = *record++, moved = *record & 1;
+        const real *base = made_at(level, *record++ - moved);
+        Sum sum = {0};
+        sum.moment = place[w + 1 - moved] * moment_of(level, base);
+        for (int t = 0; t < times; t++, record += 5) {
+            uint32_t at = (uint32_t)record[4];
+            for (int i = 0; i < 4; i += 2, at >>= 16) {
+                int enter = at & 255, leave = at >> 8 & 255;
+                Sum change =
+                    difference(level, place[enter], member_at(level, enter, (uint64_t)record[i]),
+                               place[leave], member_at(level, leave, (uint64_t)record[i + 1]));
+                sum = sum_of(level, sum, change);
+            }
+        }
+        sum_store(sum, level, base, made_at(level, row));
     }
 }
 
-SM_INLINE void subsums(const Lsm *lsm, int layer, Level bar, Level plate)
+SM_INLINE void rows_listed(const int *record, long count, int times, const real *place, Level level)
 {
-    const LsmLists *lists = &lsm->lists;
-    int first = lsm->layer_plane[layer], last = lsm->layer_plane[layer + 1];
-    running_rows(lsm, &lsm->running_lists->bar, lists->bar_plane[first], lists->bar_end[last], bar);
-    running_rows(lsm, &lsm->running_lists->plate, lists->plate_plane[first], lists->plate_end[last],
-                 plate);
-}
-
-static void subsums_up(const Lsm *lsm, int layer, bool plain)
-{
-    const Rows *r = &lsm->rows;
-    if (plain)
-        subsums(lsm, layer, (Level){r->transform, ROW_T, 4, r->bar, NONE, 0, 0},
-                (Level){r->bar, ROW_BAR, 4, r->plate, NONE, 0, 0});
-    else
-        subsums(lsm, layer, (Level){r->p, ROW_P, 1, r->bar, UP, 0, 1},
-                (Level){r->bar, ROW_BAR, 2, r->plate, UP, 0, 2});
-}
-
-static void subsums_down(const Lsm *lsm, int layer, bool plain)
-{
-    const Rows *r = &lsm->rows;
-    if (plain)
-        subsums(lsm, layer, (Level){r->transform, ROW_T, 2, r->bar, NONE, 0, 0},
-                (Level){r->bar, ROW_BAR, 2, r->plate_down, NONE, 0, 0});
-    else
-        subsums(lsm, layer, (Level){r->transform, ROW_T, 4, r->bar, DOWN, 3, 0},
-                (Level){r->bar, ROW_BAR, 4, r->plate_down, DOWN, 2, 0});
-}
-
-static void regions(const Lsm *lsm, int layer, bool plain)
-{
-    const Rows *r = &lsm->rows;
-    if (plain)
-        running_slots(lsm, layer, (Level){r->plate, ROW_PLATE, 4, r->transform, NONE, 0, 0});
-    else
-        running_slots(lsm, layer, (Level){r->plate, ROW_PLATE, 4, r->transform, UP, 0, 3});
-}
-
-static void particles(const Lsm *lsm, int layer, bool plain)
-{
-    const Rows *r = &lsm->rows;
-    Level level = {r->plate_down, ROW_PLATE_RUN, 2, r->transform, NONE, 0, 0};
-    if (plain) {
-        running_slots(lsm, layer, level);
-        return;
+    while (count-- > 0) {
+        int row = *record++, at = *record++;
+        Sum sum = {0};
+        for (int t = 0; t < times; t++, at++, record++) {
+            Sum own = member_at(level, at, (uint64_t)*record);
+            own.moment *= place[at];
+            sum = sum_of(level, sum, own);
+        }
+        sum_store(sum, level, NULL, made_at(level, row));
     }
-    level.moments = DOWN;
-    level.from = 1;
-    running_slots(lsm, layer, level);
 }
 
-static void tile_sums(const Lsm *lsm, long tile, bool plain, vec sum[12])
+/* Loops of the usual lengths are unrolled. */
+SM_INLINE void rows_listed_all(const int *record, long count, int times, const real *place,
+                               Level level)
+{
+#define ROWS_LISTED(number)                                                                        \
+    case number:                                                                                   \
+        rows_listed(record, count, number, place, level);                                          \
+        break
+    switch (times) {
+        ROWS_LISTED(2);
+        ROWS_LISTED(3);
+        ROWS_LISTED(4);
+        ROWS_LISTED(5);
+        ROWS_LISTED(6);
+        ROWS_LISTED(7);
+        ROWS_LISTED(8);
+        ROWS_LISTED(9);
+    default:
+        rows_listed(record, count, times, place, level);
+    }
+#undef ROWS_LISTED
+}
+
+/* The rows of a plane. */
+SM_INLINE void plane_rows(const Lsm *lsm, const LsmRunningList *list, int z, Level level)
+{
+    const real *place = lsm->running->place;
+    int w = lsm->w;
+    for (long g = list->plane[z]; g < list->plane[z + 1]; g++) {
+        LsmGroup group = list->group[g];
+        const int *record = list->record + group.first;
+        if (group.way == LSM_MOVED)
+            rows_moved(record, group.count, w, level);
+        else if (group.way == LSM_LISTED)
+            rows_listed_all(record, group.count, group.times, place, level);
+        else if (group.times == 1)
+            rows_changed(record, group.count, 1, place, w, level);
+        else
+            rows_changed(record, group.count, group.times, place, w, level);
+    }
+}
+
+/* Bars and plates of a layer, up (way 0) or down (1). */
+SM_INLINE void subsums(const Lsm *lsm, const Rows *rows, int layer, int way, bool plain)
+{
+    const LsmRunning *running = lsm->running;
+    Level bar = bar_level(rows, way, plain), plate = plate_level(rows, way, plain, true);
+    bar.out = rows->bar;
+    for (int z = lsm->layer_plane[layer]; z < lsm->layer_plane[layer + 1]; z++) {
+        plate.out = running->plate[way][z + lsm->w + 1];
+        plane_rows(lsm, &running->lists.bar, z, bar);
+        plane_rows(lsm, &running->lists.plate, z, plate);
+    }
+}
+
+static void subsums_up(const Lsm *lsm, const Rows *rows, int layer, bool plain)
+{
+    if (plain)
+        subsums(lsm, rows, layer, 0, true);
+    else
+        subsums(lsm, rows, layer, 0, false);
+}
+
+static void subsums_down(const Lsm *lsm, const Rows *rows, int layer, bool plain)
+{
+    if (plain)
+        subsums(lsm, rows, layer, 1, true);
+    else
+        subsums(lsm, rows, layer, 1, false);
+}
+
+/* Regions around the particles of a layer (way 0), or sums over them (1). */
+SM_INLINE void layer_rows(const Lsm *lsm, const Rows *rows, int layer, int way, bool plain)
+{
+    Level level = region_level(way, plain);
+    level.along_z = true;
+    level.in_width = ROW;
+    level.out = rows->transform;
+    for (int z = lsm->layer_plane[layer]; z < lsm->layer_plane[layer + 1]; z++) {
+        level.in = lsm->running->plate[way] + z;
+        plane_rows(lsm, &lsm->running->lists.region, z, level);
+    }
+}
+
+static void regions(const Lsm *lsm, const Rows *rows, int layer, bool plain)
+{
+    if (plain)
+        layer_rows(lsm, rows, layer, 0, true);
+    else
+        layer_rows(lsm, rows, layer, 0, false);
+}
+
+static void particles(const Lsm *lsm, const Rows *rows, int layer, bool plain)
+{
+    if (plain)
+        layer_rows(lsm, rows, layer, 1, true);
+    else
+        layer_rows(lsm, rows, layer, 1, false);
+}
+
+static void tile_sums(const Lsm *lsm, const Rows *rows, long tile, bool plain, vec sum[12])
 {
     const int *slot = lsm->tile_slot + tile * SM_LANES;
     const real *row[SM_LANES];
     for (int lane = 0; lane < SM_LANES; lane++)
-        row[lane] = lsm->rows.transform + (slot[lane] + 1) * (long)ROW_T;
+        row[lane] = slot[lane] < 0 ? rows->transform
+                                   : rows->transform + (slot[lane] - rows->first + 1) * ROW_T;
     sums_of_rows(row, plain, sum);
 }
 
-static void block_sums(const Lsm *lsm, long block, bool plain, vec sum[6])
+static void block_sums(const Lsm *lsm, const Rows *rows, long block, bool plain, vec sum[6])
 {
-    const real *row = lsm->rows.transform + (block * SM_LANES + 1) * ROW_T;
+    (void)lsm;
+    const real *row = rows->transform + (block * SM_LANES - rows->first + 1) * ROW_T;
     real(*out)[SM_LANES] = (real(*)[SM_LANES])sum;
     for (int lane = 0; lane < SM_LANES; lane++)
         for (int i = 0; i < (plain ? 6 : 3); i++)
@@ -158,25 +226,83 @@ static bool applies(const Lsm *lsm)
            lsm->params.strain_limit == 0 && most <= like * least;
 }
 
-/* In place of the lists, which go. */
+/* Scratch of each thread: rows of the largest layer and the largest plane. */
+static void open_rows(const Lsm *lsm, LsmRunning *running)
+{
+    long slots = 0, bars = 0;
+    for (int l = 0; l < lsm->layers; l++) {
+        long own = (lsm->layer_block[l + 1] - lsm->layer_block[l]) * SM_LANES;
+        slots = own > slots ? own : slots;
+    }
+    for (int z = 0; z < lsm->lists.planes; z++) {
+        long own = lsm->lists.bar_plane[z + 1] - lsm->lists.bar_plane[z];
+        bars = own > bars ? own : bars;
+    }
+    running->threads = lsm->threads;
+    running->rows = sm_alloc((size_t)lsm->threads, sizeof *running->rows);
+    for (int t = 0; t < lsm->threads; t++)
+        running->rows[t] = (Rows){.p = sm_alloc((size_t)(slots + 1) * ROW_P, sizeof(real)),
+                                  .transform = sm_alloc((size_t)(slots + 1) * ROW_T, sizeof(real)),
+                                  .bar = sm_alloc((size_t)(bars + 1) * ROW, sizeof(real))};
+}
+
+/* Memory for plates, `way` of them: of a layer's planes one after the other. */
+static void open_plates(const Lsm *lsm, LsmRunning *running, int way)
+{
+    const long *plane = lsm->lists.plate_plane;
+    int planes = lsm->lists.planes, *store = sm_alloc((size_t)lsm->layers, sizeof *store);
+    int stores = lsm_pipeline_stores(lsm, way + 1, store);
+    long most = 0, high = 0; /* rows of a plane, row 0 among them, and planes of a layer */
+    for (int z = 0; z < planes; z++) {
+        long rows = plane[z + 1] - plane[z] + 1;
+        most = rows > most ? rows : most;
+    }
+    for (int l = 0; l < lsm->layers; l++) {
+        long own = lsm->layer_plane[l + 1] - lsm->layer_plane[l];
+        high = own > high ? own : high;
+    }
+    running->memory[way] = sm_alloc((size_t)(stores * high * most) * ROW, sizeof(real));
+    real **plate = sm_alloc((size_t)(planes + lsm->side + 1), sizeof *plate);
+    for (int i = 0; i < planes + lsm->side + 1; i++) plate[i] = none;
+    for (int l = 0; l < lsm->layers; l++)
+        for (int z = lsm->layer_plane[l]; z < lsm->layer_plane[l + 1]; z++) {
+            long at = store[l] * high + z - lsm->layer_plane[l];
+            plate[z + lsm->w + 1] = running->memory[way] + at * most * ROW;
+        }
+    running->plate[way] = plate;
+    free(store);
+}
+
+/* In place of lists and their rows, which go. */
 static void open_running(Lsm *lsm)
 {
-    double factor[LSM_FACTORS][2];
-    lsm->running_lists = sm_alloc(1, sizeof *lsm->running_lists);
-    lsm_running_lists_build(&lsm->lattice, &lsm->lists, lsm->layers, lsm->layer_plane,
-                            lsm->running_lists);
-    LsmRunningList *region = &lsm->running_lists->region;
-    for (long r = 1; r < region->rows; r++)
-        if (region->base[r]) region->base[r] = 2 * (lsm->slot[region->base[r] / 2 - 1] + 1) + 1;
-    lsm_running_factors(lsm->w, factor);
-    lsm->running_factor = sm_alloc(LSM_FACTORS, sizeof *lsm->running_factor);
-    for (int i = 0; i < 4 * lsm->w + 4; i++)
-        for (int k = 0; k < 2; k++) lsm->running_factor[i][k] = (real)factor[i][k];
+    LsmRunning *running = lsm->running = sm_alloc(1, sizeof *running);
+    long *first = sm_alloc((size_t)lsm->layers, sizeof *first);
+    for (int l = 0; l < lsm->layers; l++) first[l] = lsm->layer_block[l] * SM_LANES;
+    lsm_running_lists_build(&lsm->lattice, lsm->slot, &lsm->lists, lsm->layers, lsm->layer_plane,
+                            first, &running->lists);
+    free(first);
+    for (int i = 0; i <= lsm->side; i++) running->place[i] = (real)(i - lsm->w - 1);
+    open_rows(lsm, running);
+    for (int way = 0; way < 2; way++) open_plates(lsm, running, way);
     int **list[3] = {&lsm->lists.bar, &lsm->lists.plate, &lsm->lists.region};
     for (int i = 0; i < 3; i++) {
         free(*list[i]);
         *list[i] = NULL;
     }
+    const Rows *rows = &lsm->rows;
+    sm_free_all(rows->p, rows->bar, rows->plate, rows->transform, rows->plate_down);
+    lsm->rows = (Rows){.first = 0};
+}
+
+void lsm_running_free(LsmRunning *running)
+{
+    if (!running) return;
+    lsm_running_lists_free(&running->lists);
+    for (int t = 0; t < running->threads; t++)
+        sm_free_all(running->rows[t].p, running->rows[t].transform, running->rows[t].bar);
+    for (int way = 0; way < 2; way++) sm_free_all(running->plate[way], running->memory[way]);
+    sm_free_all(running->rows, running);
 }
 
 const LsmSums lsm_sums_running = {
@@ -187,5 +313,4 @@ const LsmSums lsm_sums_running = {
     .phase = {lsm_lists_subsums, lsm_lists_solve, lsm_lists_end},
     .lists = &kernels,
     .layer_planes = 8, /* that lists along z run through */
-    .plate_down = ROW_PLATE_RUN,
 };

@@ -49,19 +49,19 @@ struct LsmPass {
     void (*end)(Lsm *lsm, long block, int blocks, vec (*sum)[6], SmLaps *laps);
 };
 
-/* Sums over lists. Rows are state.h's. */
+/* Sums over lists. */
 typedef struct {
     /* Bars and plates of a layer, from the particles up and from the regions down. */
-    void (*subsums_up)(const Lsm *lsm, int layer, bool plain);
-    void (*subsums_down)(const Lsm *lsm, int layer, bool plain);
+    void (*subsums_up)(const Lsm *lsm, const Rows *rows, int layer, bool plain);
+    void (*subsums_down)(const Lsm *lsm, const Rows *rows, int layer, bool plain);
 
     /* The last stage of a whole layer, or NULL where it is done tile by tile and block by block. */
-    void (*regions)(const Lsm *lsm, int layer, bool plain);
-    void (*particles)(const Lsm *lsm, int layer, bool plain);
+    void (*regions)(const Lsm *lsm, const Rows *rows, int layer, bool plain);
+    void (*particles)(const Lsm *lsm, const Rows *rows, int layer, bool plain);
 
     /* The sums (LsmPass) of a tile, and over a block's particles that have lists. */
-    void (*tile)(const Lsm *lsm, long tile, bool plain, vec sum[12]);
-    void (*block)(const Lsm *lsm, long block, bool plain, vec sum[6]);
+    void (*tile)(const Lsm *lsm, const Rows *rows, long tile, bool plain, vec sum[12]);
+    void (*block)(const Lsm *lsm, const Rows *rows, long block, bool plain, vec sum[6]);
 } LsmListKernels;
 
 struct LsmSums {
@@ -73,7 +73,6 @@ struct LsmSums {
     LsmPhase *phase[3];              /* of a pass: pipeline.h */
     const LsmListKernels *lists;     /* of the regions that have lists */
     int layer_planes;                /* least planes of a layer */
-    int plate_down;                  /* values in a row of rows.plate_down */
 };
 
 extern const LsmSums lsm_sums_naive, lsm_sums_lists, lsm_sums_running, lsm_sums_boxes,

@@ -88,6 +88,30 @@ SM_INLINE vec4 half_first(HalfRow half)
 #endif
 }
 
+SM_INLINE Row row_less(Row a, Row b)
+{
+    for (int i = 0; i < ROW_VECS; i++) a.vector[i] -= b.vector[i];
+    return a;
+}
+
+SM_INLINE HalfRow half_less(HalfRow a, HalfRow b)
+{
+    for (int i = 0; i < HALF_VECS; i++) a.vector[i] -= b.vector[i];
+    return a;
+}
+
+/* A half and zeros. */
+SM_INLINE Row row_of_half(HalfRow half)
+{
+    Row row = {0};
+#if SM_LANES == 16 && defined(__AVX512F__)
+    row.vector[0] = (vec)_mm512_zextps256_ps512((__m256)half.vector[0]);
+#else
+    memcpy(&row, &half, sizeof half);
+#endif
+    return row;
+}
+
 SM_INLINE vec4 row_first(Row row)
 {
 #if SM_LANES == 4
@@ -109,16 +133,16 @@ SM_INLINE HalfRow half_add_four(HalfRow half, int last, vec4 v)
 #endif
 }
 
-/* `row` with `v` added to its first four values, or its last. */
-SM_INLINE Row row_add_four(Row row, int last, vec4 v)
+/* `row` with `v` added to its four values number `at`. */
+SM_INLINE Row row_add_four(Row row, int at, vec4 v)
 {
 #if SM_LANES == 16 && defined(__AVX512F__) /* the compiler would go through memory, and stall */
-    row.vector[0] += last ? (vec)_mm512_maskz_broadcast_f32x4(0xf000, (__m128)v)
-                          : (vec)_mm512_zextps128_ps512((__m128)v);
+    row.vector[0] += (vec)_mm512_maskz_broadcast_f32x4((__mmask16)(15 << 4 * at), (__m128)v);
 #elif SM_LANES == 8
-    row.vector[last] += last ? half_of((vec4){0}, v).vector[0] : half_of(v, (vec4){0}).vector[0];
+    row.vector[at / 2] +=
+        at % 2 ? half_of((vec4){0}, v).vector[0] : half_of(v, (vec4){0}).vector[0];
 #else
-    row.vector[last ? ROW_VECS - 1 : 0] += v;
+    row.vector[at] += v;
 #endif
     return row;
 }

@@ -87,7 +87,7 @@ TEST(rows_are_added_whole_and_in_fours)
         half_store(half, half_add_four(half_load(from), end, last));
         for (int i = 0; i < 8; i++)
             assert_true(half[i] == from[i] + (i / 4 == end ? from[9 + i % 4] : 0));
-        row_store(row, row_add_four(row_load(from), end, first));
+        row_store(row, row_add_four(row_load(from), 3 * end, first));
         for (int i = 0; i < 16; i++)
             assert_true(row[i] == from[i] + (i / 4 == 3 * end ? from[1 + i % 4] : 0));
     }
