@@ -553,6 +553,7 @@ static void free_regions(Lsm *lsm)
     lsm_lists_free(&lsm->lists);
     if (lsm->allocator) lsm_allocator_free(lsm->allocator);
     lsm_running_free(lsm->running);
+    lsm->running = NULL;
     lsm_fixups_free(lsm->fixups);
     if (lsm->box && !lsm->fixups) free(lsm->block_region);
     for (int t = 0; lsm->group_rows && t < lsm->threads; t++) free(lsm->group_rows[t]);

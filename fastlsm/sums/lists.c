@@ -16,10 +16,11 @@ void lsm_lists_build_layers(Lsm *lsm)
     for (long p = 0; p < lsm->lattice.count; p++) count[lsm->lattice.coord[p][2]]++;
     lsm->layer_plane = sm_alloc((size_t)planes + 1, sizeof(int));
     lsm->layers = 0;
+    int least = lsm->sums->layer_planes; /* where lists run through a layer it reaches the next */
+    if (least > 1 && least < lsm->w) least = lsm->w;
     long held = 0;
     for (int z = 0; z < planes; z++) {
         held += count[z];
-        int least = lsm->sums->layer_planes > lsm->w ? lsm->sums->layer_planes : lsm->w;
         bool high = z + 1 - lsm->layer_plane[lsm->layers] >= least;
         if ((held >= LAYER_PARTICLES && high) || z == planes - 1) {
             lsm->layer_plane[++lsm->layers] = z + 1;

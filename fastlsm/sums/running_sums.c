@@ -226,7 +226,7 @@ static bool applies(const Lsm *lsm)
            lsm->params.strain_limit == 0 && most <= like * least;
 }
 
-/* Scratch of each thread: rows of the largest layer and the largest plane. */
+/* Scratch of each thread, for the largest layer and the largest plane. */
 static void open_rows(const Lsm *lsm, LsmRunning *running)
 {
     long slots = 0, bars = 0;
@@ -246,7 +246,8 @@ static void open_rows(const Lsm *lsm, LsmRunning *running)
                                   .bar = sm_alloc((size_t)(bars + 1) * ROW, sizeof(real))};
 }
 
-/* Memory for plates, `way` of them: of a layer's planes one after the other. */
+/* Memory for plates, up (way 0) or down (1). Row 0 of a plane is where no other plane's rows are,
+ * and stays zero. */
 static void open_plates(const Lsm *lsm, LsmRunning *running, int way)
 {
     const long *plane = lsm->lists.plate_plane;
@@ -261,13 +262,15 @@ static void open_plates(const Lsm *lsm, LsmRunning *running, int way)
         long own = lsm->layer_plane[l + 1] - lsm->layer_plane[l];
         high = own > high ? own : high;
     }
-    running->memory[way] = sm_alloc((size_t)(stores * high * most) * ROW, sizeof(real));
+    long all = plane[planes] + planes, turns = stores * high * most;
+    running->memory[way] = sm_alloc((size_t)(turns < all ? turns : all) * ROW, sizeof(real));
     real **plate = sm_alloc((size_t)(planes + lsm->side + 1), sizeof *plate);
     for (int i = 0; i < planes + lsm->side + 1; i++) plate[i] = none;
     for (int l = 0; l < lsm->layers; l++)
         for (int z = lsm->layer_plane[l]; z < lsm->layer_plane[l + 1]; z++) {
-            long at = store[l] * high + z - lsm->layer_plane[l];
-            plate[z + lsm->w + 1] = running->memory[way] + at * most * ROW;
+            long row = (store[l] * high + z - lsm->layer_plane[l]) * most;
+            if (turns >= all) row = plane[z] - 1 + z; /* each its own: one is far larger */
+            plate[z + lsm->w + 1] = running->memory[way] + row * ROW;
         }
     running->plate[way] = plate;
     free(store);
@@ -312,5 +315,5 @@ const LsmSums lsm_sums_running = {
     .open = open_running,
     .phase = {lsm_lists_subsums, lsm_lists_solve, lsm_lists_end},
     .lists = &kernels,
-    .layer_planes = 8, /* that lists along z run through */
+    .layer_planes = 8, /* that lists along z run through; w where that is more */
 };
