@@ -309,16 +309,16 @@ static long value_at(const Kind *kind, const int *value, int z, int place, int n
     return name ? value[name / LSM_NAME + kind->member[plane] - 1] : 0;
 }
 
-/* A record sums what its row's list does, if its base, at most LSM_RUN_MOST rows down, does.
- * Returns the row. */
-static long assert_record(const Kind *kind, int z, LsmGroup group, const int *record,
+/* A record sums what its row's list does, if its base, of the same layer and fewer than
+ * LSM_RUN_MOST rows down, does. */
+static void assert_record(const Kind *kind, int z, LsmGroup group, const int *record,
                           const int *value, int *length)
 {
     long sum = 0, moment = 0, want, want_moment, r = record[0] / LSM_NAME + kind->first[z] - 1;
     int w = kind->side / 2, moved = group.way == LSM_MOVED || record[1] % LSM_NAME;
     if (group.way != LSM_LISTED) {
         long base = record[1] / LSM_NAME + kind->first[z] - 1;
-        assert_true(length[base] > 0);
+        assert_true(record[1] >= LSM_NAME && length[base] > 0);
         length[r] = length[base] + 1;
         sum_list(kind->list + base * kind->side, kind->side, value, &sum, &moment);
         moment -= moved * sum;
@@ -342,7 +342,6 @@ static long assert_record(const Kind *kind, int z, LsmGroup group, const int *re
     assert_int_equal(sum, want);
     assert_int_equal(moment, want_moment);
     assert_true(length[r] <= LSM_RUN_MOST);
-    return r;
 }
 
 /* Every row is made once; returns how many have a base. */
