@@ -29,18 +29,11 @@
     {                                                                                              \
         label, "cases", &bench_scene_kernels, number, .at_most = (ns), .avx2_share = (share)       \
     }
-#define PART(number, of, label, which, ...)                                                        \
+#define HAND(label, which, ...)                                                                    \
     {                                                                                              \
-        label, "octree", &bench_tree_step_kernels, number, .side = (of), .part = (which),          \
-                                                           __VA_ARGS__                             \
+        "oct-hand-" label, "octree", &bench_tree_step_kernels, 50, .side = BENCH_HAND,             \
+                                                                   .part = (which), __VA_ARGS__    \
     }
-#define PARTS(number, of, prefix)                                                                  \
-    PART(number, of, prefix "-depth", BENCH_TREE_DEPTH, .at_most = 0),                             \
-        PART(number, of, prefix "-breadth", BENCH_TREE_BREADTH, .at_most = 0),                     \
-        PART(number, of, prefix "-polar", BENCH_TREE_POLAR, .at_most = 0),                         \
-        PART(number, of, prefix "-goals-hf", BENCH_TREE_GOALS, .at_most = 0),                      \
-        PART(number, of, prefix "-goals-adjoint", BENCH_TREE_GOALS, .adjoint = true),              \
-        PART(number, of, prefix "-damping", BENCH_TREE_DAMPING, .at_most = 0)
 /* The cost of a change does not grow with the body: at most twice the processor time that it takes
  * in 10^3 nodes, whose caches the others outgrow. */
 #define CHANGE(number, of, label, which, ...)                                                      \
@@ -88,19 +81,15 @@ static const BenchKernel kernels[] = {
     STEP("scale-1e5", "scaling", 40, 46, 1, .base = "scale-1e4", .wanted = 1.25),
     STEP("scale-1e6", "scaling", 40, 100, 1, .base = "scale-1e4", .wanted = 1.25),
     STEP("scale-1e7", "scaling", 40, 215, 1, .large = true, .base = "scale-1e4", .wanted = 1.25),
-    PARTS(50, BENCH_HAND, "oct-hand"),
-    PART(50, BENCH_HAND, "oct-hand-step", BENCH_TREE_WHOLE, .at_most = 60e3, .avx2_share = 0.20,
-         .paper = "4.5 ms"),
-    PART(50, BENCH_HAND, "oct-hand-step-plain", BENCH_TREE_WHOLE, .weighting = OCT_PLAIN),
-    PART(50, BENCH_HAND, "oct-hand-step-adjoint", BENCH_TREE_WHOLE, .adjoint = true),
-    PARTS(51, BENCH_REGULAR_HAND, "oct-regular"),
-    PART(51, BENCH_REGULAR_HAND, "oct-regular-step", BENCH_TREE_WHOLE, .at_most = 120,
-         .paper = "6200 ns"),
-    PART(51, BENCH_REGULAR_HAND, "oct-regular-step-plain", BENCH_TREE_WHOLE,
-         .weighting = OCT_PLAIN),
-    PART(51, BENCH_REGULAR_HAND, "oct-regular-step-adjoint", BENCH_TREE_WHOLE, .adjoint = true),
-    PART(51, BENCH_REGULAR_HAND, "oct-regular-step-2threads", BENCH_TREE_WHOLE, .threads = 2,
-         .base = "oct-regular-step", .wanted = 1.8),
+    HAND("depth", BENCH_TREE_DEPTH, .at_most = 0),
+    HAND("breadth", BENCH_TREE_BREADTH, .at_most = 0),
+    HAND("polar", BENCH_TREE_POLAR, .at_most = 0),
+    HAND("goals-hf", BENCH_TREE_GOALS, .at_most = 0),
+    HAND("goals-adjoint", BENCH_TREE_GOALS, .adjoint = true),
+    HAND("damping", BENCH_TREE_DAMPING, .at_most = 0),
+    HAND("step", BENCH_TREE_WHOLE, .at_most = 60e3, .avx2_share = 0.20, .paper = "4.5 ms"),
+    HAND("step-plain", BENCH_TREE_WHOLE, .weighting = OCT_PLAIN),
+    HAND("step-adjoint", BENCH_TREE_WHOLE, .adjoint = true),
     CHANGE(60, 10, "oct-refine-1e3", BENCH_REFINE, .at_most = 0),
     CHANGE(60, 10, "oct-cut-1e3", BENCH_CUT, .at_most = 0),
     CHANGES(61, 22, "1e4", .at_most = 0),

@@ -5,16 +5,15 @@
 #include "../../lib/shapes/shape.h"
 #include "../scene/memory.h"
 
-/* Of the hand's solid lattice; the second has 35,000 material cells. */
-enum { PARTICLES = 35000, REGULAR_PARTICLES = 41400, BASES = 28, NODES = 661, LEVELS = 4 };
+/* Of the hand. */
+enum { PARTICLES = 35000, BASES = 28, NODES = 661, LEVELS = 4 };
 
 /* Of a cube, measured: voxels, tree, graph and regions, and an engine on them. */
 static const double node_bytes = 1300;
 
 static SmCode make_voxels(int side, SmVoxels *voxels, SmError *error)
 {
-    const SmVoxelParams params = {.fill = SM_SOLID,
-                                  .particles = side == BENCH_HAND ? PARTICLES : REGULAR_PARTICLES};
+    const SmVoxelParams params = {.fill = SM_SOLID, .particles = PARTICLES};
     SmMesh mesh = {0};
     SmCode code = side > 0 ? bench_memory_cube(side, "octree", node_bytes, error)
                            : sm_shape_mesh("hand", &mesh, error);

@@ -225,7 +225,7 @@ static void write_record(const Kind *kind, int z, long r, int *record)
     }
     record[1] += moved;
     for (int t = 0; t < kind->times[r]; t++)
-        write_changes(kind, z, &change, 2 * t, record + 2 + 5 * t);
+        write_changes(kind, z, &change, 2 * t, record + 2 + LSM_CHANGES * t);
 }
 
 /* Groups of a plane in their order: listed rows, by their members; then, as far down a run, those
@@ -325,7 +325,7 @@ long lsm_running_additions(const LsmRunningList *list)
         int width = lsm_record_width(group->way, group->times);
         for (long i = 0; i < group->count * width; i++) {
             int at = (int)(i % width) - 2;
-            bool places = group->way == LSM_CHANGED && at % 5 == 4;
+            bool places = group->way == LSM_CHANGED && at % LSM_CHANGES == 4;
             count += at >= 0 && !places && list->record[group->first + i] != 0;
         }
     }

@@ -28,9 +28,10 @@ typedef enum {
                     -w-1 */
     LSM_CHANGED, /* row, base (+ 1 if one place back); so many times in turn two members that enter
                     and two that leave, and their places, a byte each, the first one's lowest */
-    LSM_LISTED,  /* row, a place, the members at so many places from there on */
-    LSM_WAYS
+    LSM_LISTED   /* row, a place, the members at so many places from there on */
 } LsmWay;
+
+enum { LSM_CHANGES = 5 }; /* ints for two members that enter, two that leave, and their places */
 
 typedef struct {
     LsmWay way;
@@ -41,7 +42,7 @@ typedef struct {
 /* Ints in a record. */
 static inline int lsm_record_width(LsmWay way, int times)
 {
-    const int width[] = {4, 2 + 5 * times, 2 + times};
+    const int width[] = {4, 2 + LSM_CHANGES * times, 2 + times};
     return width[way];
 }
 

@@ -329,10 +329,11 @@ static void assert_record(const Kind *kind, int z, LsmGroup group, const int *re
                   : group.way == LSM_MOVED ? 2
                                            : 4 * group.times;
     for (int i = 0; i < members; i++) {
-        const int *name = record + 2 + (group.way == LSM_CHANGED ? i / 4 * 5 + i % 4 : i);
-        int place = group.way == LSM_LISTED  ? record[1] + i
-                    : group.way == LSM_MOVED ? (i ? 0 : kind->side)
-                                             : record[2 + i / 4 * 5 + 4] >> i % 4 * 8 & 255;
+        const int *name = record + 2 + (group.way == LSM_CHANGED ? i / 4 * LSM_CHANGES + i % 4 : i);
+        int place = group.way == LSM_LISTED ? record[1] + i
+                    : group.way == LSM_MOVED
+                        ? (i ? 0 : kind->side)
+                        : record[2 + i / 4 * LSM_CHANGES + 4] >> i % 4 * 8 & 255;
         long sign = group.way != LSM_LISTED && i % 2 ? -1 : 1,
              own = sign * value_at(kind, value, z, place, *name);
         sum += own;

@@ -61,7 +61,7 @@ SM_INLINE void rows_changed(const int *record, long count, int times, const real
         const real *base = made_at(level, *record++ - moved);
         Sum sum = {0};
         sum.moment = place[w + 1 - moved] * moment_of(level, base);
-        for (int t = 0; t < times; t++, record += 5) {
+        for (int t = 0; t < times; t++, record += LSM_CHANGES) {
             uint32_t at = (uint32_t)record[4];
             for (int i = 0; i < 4; i += 2, at >>= 16) {
                 int enter = at & 255, leave = at >> 8 & 255;
