@@ -139,6 +139,7 @@ SM_INLINE void subsums(const Lsm *lsm, const Rows *rows, int layer, int way, boo
     bar.out = rows->bar;
     for (int z = lsm->layer_plane[layer]; z < lsm->layer_plane[layer + 1]; z++) {
         plate.out = running->plate[way][z + lsm->w + 1];
+        memset(plate.out, 0, ROW * sizeof(real)); /* another layer's rows were there */
         plane_rows(lsm, &running->lists.bar, z, bar);
         plane_rows(lsm, &running->lists.plate, z, plate);
     }
@@ -246,29 +247,26 @@ static void open_rows(const Lsm *lsm, LsmRunning *running)
                                   .bar = sm_alloc((size_t)(bars + 1) * ROW, sizeof(real))};
 }
 
-/* Memory for plates, up (way 0) or down (1). Row 0 of a plane is where no other plane's rows are,
- * and stays zero. */
+/* Memory for plates, up (way 0) or down (1): of a layer's planes one after the other. */
 static void open_plates(const Lsm *lsm, LsmRunning *running, int way)
 {
     const long *plane = lsm->lists.plate_plane;
     int planes = lsm->lists.planes, *store = sm_alloc((size_t)lsm->layers, sizeof *store);
     int stores = lsm_pipeline_stores(lsm, way + 1, store);
-    long most = 0, high = 0; /* rows of a plane, row 0 among them, and planes of a layer */
-    for (int z = 0; z < planes; z++) {
-        long rows = plane[z + 1] - plane[z] + 1;
+    long most = 0;
+    for (int l = 0; l < lsm->layers; l++) {
+        int first = lsm->layer_plane[l], end = lsm->layer_plane[l + 1];
+        long rows = plane[end] - plane[first] + end - first;
         most = rows > most ? rows : most;
     }
-    for (int l = 0; l < lsm->layers; l++) {
-        long own = lsm->layer_plane[l + 1] - lsm->layer_plane[l];
-        high = own > high ? own : high;
-    }
-    long all = plane[planes] + planes, turns = stores * high * most;
+    long all = plane[planes] + planes, turns = stores * most;
     running->memory[way] = sm_alloc((size_t)(turns < all ? turns : all) * ROW, sizeof(real));
     real **plate = sm_alloc((size_t)(planes + lsm->side + 1), sizeof *plate);
     for (int i = 0; i < planes + lsm->side + 1; i++) plate[i] = none;
     for (int l = 0; l < lsm->layers; l++)
         for (int z = lsm->layer_plane[l]; z < lsm->layer_plane[l + 1]; z++) {
-            long row = (store[l] * high + z - lsm->layer_plane[l]) * most;
+            int first = lsm->layer_plane[l];
+            long row = store[l] * most + plane[z] - plane[first] + z - first;
             if (turns >= all) row = plane[z] - 1 + z; /* each its own: one is far larger */
             plate[z + lsm->w + 1] = running->memory[way] + row * ROW;
         }
