@@ -7,8 +7,8 @@
 #include "../../lib/simd/rows.h"
 #include "../state.h"
 
-/* Calls kernel(..., side), one body in which `side` is a constant for the usual widths: its loops
- * are unrolled. */
+/* Calls kernel(..., side), one body in which `side`, or whatever counts members, is a constant for
+ * the usual widths: its loops are unrolled. */
 #define WITH_SIDE(side, kernel, ...) kernel(__VA_ARGS__, side)
 #define AT_SIDE(number, ...)                                                                       \
     case number:                                                                                   \

@@ -63,11 +63,6 @@ static Rows rows_of(const Lsm *lsm, int layer, int thread)
     return lsm->running ? lsm_running_rows(lsm, layer, thread) : lsm->rows;
 }
 
-static long slot_row(const Rows *rows, long slot)
-{
-    return slot - rows->first + 1;
-}
-
 /* Rows of m~ x. */
 static void weigh(const Lsm *lsm, const Rows *rows, long block)
 {

@@ -24,6 +24,12 @@ SM_INLINE long lsm_layer_begin(long slot)
     return (slot + MOMENTUM_WAYS - 1) / MOMENTUM_WAYS * MOMENTUM_WAYS;
 }
 
+/* A slot's row of p and transform. */
+SM_INLINE long slot_row(const Rows *rows, long slot)
+{
+    return slot - rows->first + 1;
+}
+
 /* Groups planes into layers of some hundred particles at least and finds how far a region reaches.
  */
 void lsm_lists_build_layers(Lsm *lsm);

@@ -75,7 +75,7 @@ SM_INLINE void rows_changed(const int *record, long count, int times, const real
     }
 }
 
-SM_INLINE void rows_listed(const int *record, long count, int times, const real *place, Level level)
+SM_INLINE void rows_listed(const int *record, long count, const real *place, Level level, int times)
 {
     while (count-- > 0) {
         int row = *record++, at = *record++;
@@ -89,29 +89,6 @@ SM_INLINE void rows_listed(const int *record, long count, int times, const real 
     }
 }
 
-/* Loops of the usual lengths are unrolled. */
-SM_INLINE void rows_listed_all(const int *record, long count, int times, const real *place,
-                               Level level)
-{
-#define ROWS_LISTED(number)                                                                        \
-    case number:                                                                                   \
-        rows_listed(record, count, number, place, level);                                          \
-        break
-    switch (times) {
-        ROWS_LISTED(2);
-        ROWS_LISTED(3);
-        ROWS_LISTED(4);
-        ROWS_LISTED(5);
-        ROWS_LISTED(6);
-        ROWS_LISTED(7);
-        ROWS_LISTED(8);
-        ROWS_LISTED(9);
-    default:
-        rows_listed(record, count, times, place, level);
-    }
-#undef ROWS_LISTED
-}
-
 /* The rows of a plane. */
 SM_INLINE void plane_rows(const Lsm *lsm, const LsmRunningList *list, int z, Level level)
 {
@@ -123,7 +100,7 @@ SM_INLINE void plane_rows(const Lsm *lsm, const LsmRunningList *list, int z, Lev
         if (group.way == LSM_MOVED)
             rows_moved(record, group.count, w, level);
         else if (group.way == LSM_LISTED)
-            rows_listed_all(record, group.count, group.times, place, level);
+            FOR_SIDE(group.times, rows_listed, record, group.count, place, level);
         else if (group.times == 1)
             rows_changed(record, group.count, 1, place, w, level);
         else
@@ -195,15 +172,15 @@ static void tile_sums(const Lsm *lsm, const Rows *rows, long tile, bool plain, v
     const int *slot = lsm->tile_slot + tile * SM_LANES;
     const real *row[SM_LANES];
     for (int lane = 0; lane < SM_LANES; lane++)
-        row[lane] = slot[lane] < 0 ? rows->transform
-                                   : rows->transform + (slot[lane] - rows->first + 1) * ROW_T;
+        row[lane] =
+            slot[lane] < 0 ? rows->transform : rows->transform + slot_row(rows, slot[lane]) * ROW_T;
     sums_of_rows(row, plain, sum);
 }
 
 static void block_sums(const Lsm *lsm, const Rows *rows, long block, bool plain, vec sum[6])
 {
     (void)lsm;
-    const real *row = rows->transform + (block * SM_LANES - rows->first + 1) * ROW_T;
+    const real *row = rows->transform + slot_row(rows, block * SM_LANES) * ROW_T;
     real(*out)[SM_LANES] = (real(*)[SM_LANES])sum;
     for (int lane = 0; lane < SM_LANES; lane++)
         for (int i = 0; i < (plain ? 6 : 3); i++)

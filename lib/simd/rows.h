@@ -61,13 +61,6 @@ SM_INLINE HalfRow half_add(HalfRow a, HalfRow b)
     return a;
 }
 
-/* sum + by row */
-SM_INLINE HalfRow half_add_times(HalfRow sum, real by, HalfRow row)
-{
-    for (int i = 0; i < HALF_VECS; i++) sum.vector[i] += by * row.vector[i];
-    return sum;
-}
-
 /* Two fours. */
 SM_INLINE HalfRow half_of(vec4 first, vec4 second)
 {

@@ -81,15 +81,18 @@ TEST(rows_are_added_whole_and_in_fours)
     row_store(row, row_add(row_load(from), row_load(from)));
     for (int i = 0; i < 8; i++) assert_true(half[i] == from[i] + from[i + 8]);
     for (int i = 0; i < 16; i++) assert_true(row[i] == 2 * from[i]);
-    half_store(half, half_add_times(half_load(from), 3, half_load(from + 8)));
-    for (int i = 0; i < 8; i++) assert_true(half[i] == from[i] + 3 * from[i + 8]);
-    for (int end = 0; end < 2; end++) {
+    half_store(half, half_less(half_load(from), half_load(from + 8)));
+    for (int i = 0; i < 8; i++) assert_true(half[i] == from[i] - from[i + 8]);
+    row_store(row, row_less(row_of_half(half_load(from + 8)), row_load(from)));
+    for (int i = 0; i < 16; i++) assert_true(row[i] == (i < 8 ? from[i + 8] : 0) - from[i]);
+    for (int end = 0; end < 4; end++) {
+        row_store(row, row_add_four(row_load(from), end, first));
+        for (int i = 0; i < 16; i++)
+            assert_true(row[i] == from[i] + (i / 4 == end ? from[1 + i % 4] : 0));
+        if (end > 1) continue;
         half_store(half, half_add_four(half_load(from), end, last));
         for (int i = 0; i < 8; i++)
             assert_true(half[i] == from[i] + (i / 4 == end ? from[9 + i % 4] : 0));
-        row_store(row, row_add_four(row_load(from), 3 * end, first));
-        for (int i = 0; i < 16; i++)
-            assert_true(row[i] == from[i] + (i / 4 == 3 * end ? from[1 + i % 4] : 0));
     }
 }
 
