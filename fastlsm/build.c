@@ -7,7 +7,6 @@
 #include "match.h"
 #include "step.h"
 #include "sums/blocks.h"
-#include "sums/box_sum_fixups.h"
 #include "sums/lists.h"
 #include "sums/sums.h"
 
@@ -80,14 +79,6 @@ static KeyedRegion *room_for_keys(const Lsm *lsm, const Before *before, long *co
     return sm_alloc((size_t)*count, sizeof(KeyedRegion));
 }
 
-/* Planes `share` of `shares`, of about as many particles. */
-static int share_begin(const Lsm *lsm, const Before *before, int share, int shares)
-{
-    int z = 0, planes = lsm->lattice.size[2];
-    while (z < planes && before[z].particles * shares < before[planes].particles * share) z++;
-    return share == shares ? planes : z;
-}
-
 /* The rows of p's region, unless it is a whole cube and `cubes` is false, and its key, unless it
  * is. Returns how many members it has. */
 static int find_region(const Lsm *lsm, long p, bool cubes, uint64_t *rows, KeyedRegion *keyed,
@@ -102,22 +93,6 @@ static int find_region(const Lsm *lsm, long p, bool cubes, uint64_t *rows, Keyed
     return members;
 }
 
-/* What is found of the regions of planes first to before `end`: keys, and, unless they are NULL,
- * fix-ups and numbers of members. */
-static void find_share(const Lsm *lsm, const Before *before, int first, int end, KeyedRegion *keyed,
-                       FixupsBuilder *fixups, int *members)
-{
-    uint64_t rows[LSM_MAX_SIDE * LSM_MAX_SIDE];
-    bool whole, simple;
-    keyed += before[first].particles - before[first].whole;
-    for (long p = before[first].particles; p < before[end].particles; p++) {
-        int count = find_region(lsm, p, false, rows, keyed, &whole, &simple);
-        if (members) members[p] = count;
-        if (fixups && !simple) lsm_fixups_add(fixups, p, rows);
-        keyed += !whole;
-    }
-}
-
 long lsm_unique(Lsm *lsm)
 {
     if (lsm->unique >= 0) return lsm->unique;
@@ -126,38 +101,17 @@ long lsm_unique(Lsm *lsm)
     Before *before = count_planes(lsm);
     KeyedRegion *keyed = room_for_keys(lsm, before, &count);
 #pragma omp parallel for schedule(dynamic) num_threads(sm_team_for(lsm->lattice.count))
-    for (int z = 0; z < planes; z++) find_share(lsm, before, z, z + 1, keyed, NULL, NULL);
+    for (int z = 0; z < planes; z++) {
+        KeyedRegion *own = keyed + before[z].particles - before[z].whole;
+        uint64_t rows[LSM_MAX_SIDE * LSM_MAX_SIDE];
+        bool whole, simple;
+        for (long p = before[z].particles; p < before[z + 1].particles; p++) {
+            find_region(lsm, p, false, rows, own, &whole, &simple);
+            own += !whole;
+        }
+    }
     free(before);
     return lsm->unique = collapse(keyed, count, lsm->lattice.count, NULL);
-}
-
-/* In block form, what box sums get wrong is corrected; in a body that can break, whose regions
- * change one by one, it is listed. */
-static bool corrected(const Lsm *lsm)
-{
-    return lsm->box && !(lsm->params.strain_limit > 0);
-}
-
-/* Finds every region, once: counts its members and corrects what box sums get wrong of it. */
-static void correct_regions(Lsm *lsm)
-{
-    long count;
-    int shares = sm_team_for(lsm->lattice.count);
-    Before *before = count_planes(lsm);
-    KeyedRegion *keyed = room_for_keys(lsm, before, &count);
-    FixupsBuilder *fixups = lsm_fixups_open(lsm, shares);
-#pragma omp parallel for schedule(static) num_threads(shares)
-    for (int share = 0; share < shares; share++) {
-        int first = share_begin(lsm, before, share, shares),
-            end = share_begin(lsm, before, share + 1, shares);
-        FixupsBuilder *own = lsm_fixups_share(lsm, fixups, share, lsm->layer_block[first]);
-        find_share(lsm, before, first, end, keyed, own, lsm->members);
-        lsm_fixups_finish(own, lsm->layer_block[end]);
-    }
-    lsm_fixups_close(fixups, shares, lsm);
-    lsm_lists_close(lsm_lists_open(&lsm->lattice, lsm->slot, lsm->w), &lsm->lists); /* none */
-    free(before);
-    lsm->unique = collapse(keyed, count, lsm->lattice.count, NULL);
 }
 
 /* Regions that are found at once, before they are listed one after the other. */
@@ -280,21 +234,13 @@ static void tile_blocks(Lsm *lsm)
     lsm->layer_copy = sm_alloc((size_t)lsm->layers + 1, sizeof(long));
 }
 
-/* Room for the lists to change in a body that can break, and who is summed by which. */
+/* Who is summed by which lists. */
 static void place_lists(Lsm *lsm, const bool *listed)
 {
     long n = lsm->lattice.count, region = 0;
     Blocks *box = lsm->box;
-    if (lsm->params.strain_limit > 0) {
-        lsm->allocator = sm_alloc(1, sizeof *lsm->allocator);
-        lsm_allocator_open(&lsm->lists, lsm->layers, lsm->layer_plane, lsm->spare, lsm->allocator);
-    }
     lsm->block_region = lsm->particle;
     if (!box) return;
-    if (lsm->fixups) {
-        lsm_fixups_mark(lsm);
-        return;
-    }
     lsm->block_region = sm_alloc((size_t)lsm->blocks * SM_LANES, sizeof(int));
     for (long s = 0; s < lsm->blocks * SM_LANES; s++) lsm->block_region[s] = -1;
     memset(box->mixed, 0, (size_t)lsm->blocks * sizeof(bool));
@@ -306,25 +252,6 @@ static void place_lists(Lsm *lsm, const bool *listed)
     }
     for (long i = lsm->side; i < lsm->lists.bar_count * lsm->side; i++)
         if (lsm->lists.bar[i]) lsm->listed[(lsm->lists.bar[i] / LSM_NAME - 1) / SM_LANES] = true;
-}
-
-/* Slots that have rows. */
-static size_t row_slots(const Lsm *lsm)
-{
-    return lsm->fixups ? 0 : (size_t)lsm->blocks * SM_LANES;
-}
-
-static void build_rows(Lsm *lsm)
-{
-    size_t rows = row_slots(lsm) + 1, real_size = sizeof(real);
-    size_t bars = (size_t)lsm->lists.bar_count + 1, plates = (size_t)lsm->lists.plate_count + 1;
-    lsm->rows = (Rows){
-        .p = sm_alloc(rows * ROW_P, real_size),
-        .bar = sm_alloc(bars * ROW_BAR, real_size),
-        .plate = sm_alloc(plates * ROW_PLATE, real_size),
-        .transform = sm_alloc(rows * ROW_T, real_size),
-        .plate_down = sm_alloc(plates * ROW_PLATE_DOWN, real_size),
-    };
 }
 
 /* Moves the different ones of `count` records to the front, in the order in which they are first
@@ -412,10 +339,7 @@ static void build_constants(Lsm *lsm)
     lsm->tile_const = sm_alloc((size_t)lsm->tiles, sizeof(int));
     lsm->region_const = sm_alloc((size_t)lsm->tiles, sizeof(RegionConst));
     for (long tile = 0; tile < lsm->tiles; tile++) lsm->tile_const[tile] = (int)tile;
-    const LsmSums *sums = lsm->sums;
-    if (sums->open) lsm->sums = &lsm_sums_lists; /* until it is opened */
     lsm_constants(lsm);
-    lsm->sums = sums;
     lsm->particle_const = share_records(lsm->particle_const, sizeof(ParticleConst), lsm->blocks + 1,
                                         lsm->block_const, &lsm->particle_records);
     lsm->region_const = share_records(lsm->region_const, sizeof(RegionConst), lsm->tiles,
@@ -450,18 +374,39 @@ static void build_memory(Lsm *lsm)
     for (size_t i = 0; i < tiles * 9 * SM_LANES; i++) lsm->stretch[i] = i / SM_LANES % 9 % 4 == 0;
 }
 
+/* Lists, by which the constants of regions are made, too. */
+static void open_lists(Lsm *lsm, const bool *listed)
+{
+    LsmLists *lists = &lsm->lists;
+    const LsmSums *sums = lsm->sums;
+    int *region_plane = sm_alloc((size_t)lists->region_count, sizeof(int));
+    bool breaks = lsm->params.strain_limit > 0;
+    for (long p = 0, region = 0; p < lsm->lattice.count; p++)
+        if (listed[p]) region_plane[region++] = lsm->lattice.coord[p][2];
+    if (breaks) lsm_allocator_make_room(lists, lsm->layers, lsm->layer_plane, lsm->spare);
+    if (sums->open) lsm->sums = &lsm_sums_lists; /* until it is opened */
+    lsm_rows_place(lsm, region_plane);
+    build_constants(lsm);
+    lsm->sums = sums;
+    if (sums->open) {
+        lsm_rows_place(lsm, region_plane);
+        sums->open(lsm);
+    }
+    if (breaks) {
+        lsm->allocator = sm_alloc(1, sizeof *lsm->allocator);
+        lsm_allocator_open(lists, lsm->layers, lsm->layer_plane, region_plane, lsm->allocator);
+    }
+    free(region_plane);
+}
+
 static void build_regions(Lsm *lsm)
 {
     long n = lsm->lattice.count;
-    bool lists = !corrected(lsm);
-    int *original = sm_alloc(lists ? (size_t)n : 0, sizeof *original);
-    bool *listed = sm_alloc(lists ? (size_t)n : 0, sizeof *listed);
+    int *original = sm_alloc((size_t)n, sizeof *original);
+    bool *listed = sm_alloc((size_t)n, sizeof *listed);
     lsm->members = sm_alloc((size_t)n, sizeof(int));
     lsm_interior_build(&lsm->lattice, lsm->w, &lsm->interior);
-    if (lists)
-        list_regions(lsm, original, listed);
-    else
-        correct_regions(lsm);
+    list_regions(lsm, original, listed);
     for (long p = 0; p < n && lsm->params.strain_limit > 0; p++)
         original[p] = (int)p; /* equal regions may part: each has its own tile lane */
     if (lsm->box)
@@ -471,15 +416,15 @@ static void build_regions(Lsm *lsm)
     else
         build_tiles(lsm, original);
     place_lists(lsm, listed);
-    free(original);
-    free(listed);
-    if (lsm->bodies == 1) build_rows(lsm);
     find_live(lsm);
     lsm_pipeline_split(lsm);
     if (lsm->sums->share) lsm->sums->share(lsm);
-    build_constants(lsm);
     build_memory(lsm);
-    if (lsm->sums->open) lsm->sums->open(lsm);
+    if (lsm->bodies > 1)
+        build_constants(lsm);
+    else
+        open_lists(lsm, listed);
+    sm_free_all(original, listed);
     if (lsm->params.strain_limit > 0) return;
     free(lsm->members);
     lsm->members = NULL;
@@ -554,11 +499,9 @@ static void free_regions(Lsm *lsm)
     if (lsm->allocator) lsm_allocator_free(lsm->allocator);
     lsm_running_free(lsm->running);
     lsm->running = NULL;
-    lsm_fixups_free(lsm->fixups);
-    if (lsm->box && !lsm->fixups) free(lsm->block_region);
+    if (lsm->box) free(lsm->block_region);
+    lsm_rows_free(lsm);
     for (int t = 0; lsm->group_rows && t < lsm->threads; t++) free(lsm->group_rows[t]);
-    const Rows *rows = &lsm->rows;
-    sm_free_all(rows->p, rows->bar, rows->plate, rows->transform, rows->plate_down);
     sm_free_all(lsm->allocator, lsm->tile_slot, lsm->layer_tile, lsm->copy, lsm->layer_copy,
                 lsm->members, lsm->block_const, lsm->particle_const, lsm->tile_const,
                 lsm->region_const, lsm->centre, lsm->last, lsm->sweeps, lsm->stretch, lsm->live,

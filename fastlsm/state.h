@@ -11,8 +11,8 @@
  *
  * Sums have several forms (sums/sums.h). In those over lists (lattice/subsum_lists.h) a body's
  * slots follow each other without holes and every region has its lists. Where they are box sums a
- * block is SM_LANES lattice sites along x, and only regions that a box sum gets wrong have lists or
- * fix-ups. */
+ * block is SM_LANES lattice sites along x, and only regions that a box sum gets wrong have lists.
+ */
 #ifndef LSM_STATE_H
 #define LSM_STATE_H
 
@@ -35,29 +35,29 @@ typedef struct {
     long shared, count, room;
 } Records;
 
-/* Widths of the rows of list sums, in values. Vectors are padded to four, rows to whole cache lines
- * where they are read whole. */
-enum { ROW_P = 4, ROW_BAR = 16, ROW_PLATE = 16, ROW_T = 16, ROW_PLATE_DOWN = 8 };
+/* Rows of list sums, in vectors that are padded to four. What is made of fewer is less wide
+ * (list_rows.h). */
+enum { ROW_P = 4, ROW_WIDTH = 16 };
 
 typedef struct {
-    real *p;          /* [slots + 1][ROW_P]          m~ x */
-    real *bar;        /* [bars][ROW_BAR]             sums of p and of a p; then the adjoint's
-                                                     (Q, R z, R y), as the plates are done with it */
-    real *plate;      /* [plates][ROW_PLATE]         .. and of b p */
-    real *transform;  /* [slots + 1][ROW_T]          (q_r, R z, R y, R x) */
-    real *plate_down; /* [plates][ROW_PLATE_DOWN]    (Q, R z) */
-    long first;       /* slot of row 1 of p and transform */
+    real *p;         /* [slots + 1][ROW_P]      m~ x */
+    real *bar;       /* [bars][ROW_WIDTH]       sums of p and of a p; then the adjoint's (Q, R z,
+                                                R y), as the plates are done with it */
+    real *transform; /* [slots + 1][ROW_WIDTH]  (q_r, R z, R y, R x) */
+    real *plate[2];  /* [plates][ROW_WIDTH]     up, .. and of b p; down, (Q, R z) */
+    int shift;       /* from a slot to its row of p and transform */
 } Rows;
 
 /* Damping keeps its products in `transform`, and then (omega, v_r - omega x c_r) in their place; it
  * sums through the same bars and plates. */
 
-/* Row 0 of every array is zero (the absent member), slot s is row s - first + 1. */
+/* Row 0 of every array is zero (the absent member). Memory is what
+ * takes time here: a thread has rows of one layer, or its bars of one plane; plates, which are all
+ * threads', take turns until the layers around are done with them (lists.c). */
 
 typedef struct LsmPass LsmPass;       /* what is summed, and what for: sums.h */
 typedef struct LsmSums LsmSums;       /* a form of the sums: sums.h */
 typedef struct Blocks Blocks;         /* box sums: blocks.h */
-typedef struct Fixups Fixups;         /* of box sums: box_sum_fixups.h */
 typedef struct LsmRunning LsmRunning; /* running_sums.c */
 
 typedef struct Lsm {
@@ -71,7 +71,7 @@ typedef struct Lsm {
     LsmInterior interior;
     LsmLists lists;
     LsmListAllocator *allocator; /* NULL for a body that cannot break */
-    LsmRunning *running;         /* in place of the lists of `lists` and of `rows`, or NULL */
+    LsmRunning *running;         /* in place of the lists of `lists`, or NULL */
     long spare;                  /* rows that its layers have left at least */
     char *mark;                  /* [particles] zero between breaks, or NULL */
     double *mass; /* [particles] in units of mass_unit kg, their mean; NULL: all are 1 */
@@ -114,13 +114,12 @@ typedef struct Lsm {
     long *layer_block, *layer_tile; /* [layers + 1] */
     int *thread_layer;              /* [threads + 1] first layer of each thread */
 
-    Rows rows;
+    Rows *rows;        /* [threads] */
     real **group_rows; /* [threads][group_size] of instances */
     size_t group_size;
-    bool *listed;   /* [blocks] lists or fix-ups read what this block brings down, and lists its
-                       particles: rows of them are needed; NULL in list form: all are */
-    Blocks *box;    /* NULL in list form */
-    Fixups *fixups; /* in block form in place of lists, but for a body that can break */
+    bool *listed; /* [blocks] lists read this block's particles and what it brings down: rows of
+                     them are needed; NULL in list form: all are */
+    Blocks *box;  /* NULL in list form */
     const LsmPass *pass;
     const LsmSums *sums;
     SmLaps *laps; /* of thread 0, or NULL */

@@ -74,9 +74,8 @@ TEST(test_wide_lists)
     }
 }
 
-/* At rest, two tall walls a cell apart and joined at the foot: a block's box sum takes both, and
- * hundreds of particles of the other are taken from it again. */
-TEST(test_wide_fixups)
+/* At rest, two tall walls a cell apart and joined at the foot: a block's box sum takes both. */
+TEST(test_two_walls_in_a_box)
 {
     for (int precision = 0; precision < 2; precision++) {
         Body body;

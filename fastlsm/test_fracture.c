@@ -152,35 +152,12 @@ static void break_both(Lsm *lsm, Lsm *twin, const Breaks *breaks, long first)
     lsm_rebuild_regions(twin);
 }
 
-/* Every row counts those that name it; a row that none names lists nothing. */
-static void assert_store(const LsmRowStore *store, long count, const int *named, long names)
-{
-    int *uses = sm_alloc((size_t)count, sizeof(int));
-    for (long i = 0; i < names; i++) uses[named[i] / LSM_NAME]++;
-    for (long r = 1; r < count; r++) {
-        assert_int_equal(store->uses[r], uses[r]);
-        for (int i = 0; i < store->side && !uses[r]; i++)
-            assert_int_equal(store->row[r * store->side + i], 0);
-    }
-    free(uses);
-}
-
-static void assert_allocator(const Lsm *lsm)
-{
-    const LsmLists *lists = &lsm->lists;
-    assert_store(&lsm->allocator->bars, lists->bar_count, lists->plate,
-                 lists->plate_count * lists->side);
-    assert_store(&lsm->allocator->plates, lists->plate_count, lists->region,
-                 lists->region_count * lists->side);
-}
-
 static void compare(Lsm *lsm, Lsm *twin, Body *body, const Breaks *breaks, int trial)
 {
     RefRegions regions;
     ref_regions_build(&body->voxels, lsm->w, (const int(*)[2])breaks->pair, breaks->count,
                       &regions);
     assert_regions(lsm, &regions);
-    assert_allocator(lsm);
     if (trial % 3) {
         assert_int_equal(lsm_unique(lsm), ref_regions_unique(&regions));
         assert_int_equal(lsm_unique(lsm), lsm_unique(twin));

@@ -15,7 +15,7 @@ set -u
 # shellcheck source=scripts/setup
 . "$(dirname -- "${BASH_SOURCE[0]}")/setup"
 export OMP_WAIT_POLICY=passive
-quick='^(lib_(csr|isa|lanes|polar|rigid|shapebench)|fastlsm_(box_sum_fixups|engine|window)|octree_(engine|octree))'
+quick='^(lib_(csr|isa|lanes|polar|rigid|shapebench)|fastlsm_(sums|engine|window)|octree_(engine|octree))'
 
 # tests FOLDER TESTS [CMAKE OPTIONS]: builds the core there and runs its tests.
 tests() {

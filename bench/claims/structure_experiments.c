@@ -46,7 +46,6 @@ static double list_additions(Regions *of, bool running)
 {
     const LsmLattice *lattice = &of->lattice;
     const int layer_plane[] = {0, lattice->size[2]};
-    const long layer_slot[] = {0};
     int *slot = sm_alloc((size_t)lattice->count, sizeof *slot);
     for (int p = 0; p < lattice->count; p++) slot[p] = p;
     LsmListsBuilder *builder = lsm_lists_open(lattice, slot, of->w);
@@ -61,7 +60,7 @@ static double list_additions(Regions *of, bool running)
                  listed(lists.plate, lists.plate_count, of->side) +
                  listed(lists.region, lists.region_count, of->side);
     if (running) {
-        lsm_running_lists_build(lattice, slot, &lists, 1, layer_plane, layer_slot, &runs);
+        lsm_running_lists_build(lattice, slot, &lists, 1, layer_plane, &runs);
         sum = (double)(lsm_running_additions(&runs.bar) + lsm_running_additions(&runs.plate) +
                        lsm_running_additions(&runs.region));
         lsm_running_lists_free(&runs);

@@ -84,19 +84,8 @@ static bool is_box(const SmVoxels *v)
 }
 
 /* The fill from which blocks are faster than lists, as measured (shapebench kernels shows both): in
- * a box no sum needs a fix-up; a large body's lists are beyond the L2 cache, and at w = 1 block
- * form needs few fixups, for which four lanes make up less. */
-static double fill_worth(const SmVoxels *v, const SmEngineParams *params, int lanes)
-{
-    const long large = 30000;
-    bool lists_are_slow = v->particle_count >= large && params->w == 1;
-    if (is_box(v)) return 0.5;
-    if (!lists_are_slow || params->strain_limit > 0) return 0.85;
-    return lanes > 4 ? 0.6 : 0.73;
-}
-
-/* How filled groups of 16 cells are says how many regions need fix-ups, which cost most: however
- * many lanes there are. A box needs none, and what counts is how full its lanes are. */
+ * a box no region needs lists, and what counts is how full its lanes are; else how filled groups of
+ * 16 cells are, however many lanes there are, says how many do, which cost most. */
 enum { GROUP = 16 };
 
 SmLayout lsm_axes_choose(const SmVoxels *v, const SmEngineParams *params, int lanes, int *turn)
@@ -108,7 +97,7 @@ SmLayout lsm_axes_choose(const SmVoxels *v, const SmEngineParams *params, int la
     double fill = may && params->layout != SM_LAYOUT_LISTS
                       ? best_fill(v, is_box(v) ? lanes : GROUP, turn)
                       : 0;
-    if (may && (params->layout == SM_LAYOUT_BLOCKS || fill > fill_worth(v, params, lanes)))
+    if (may && (params->layout == SM_LAYOUT_BLOCKS || fill > (is_box(v) ? 0.5 : 0.85)))
         return SM_LAYOUT_BLOCKS;
     for (int t = 0; t < 3; t++) /* lists: z, the pipeline's axis, is the longest */
         if (v->size[(t + 2) % 3] > v->size[(*turn + 2) % 3]) *turn = t;

@@ -11,25 +11,30 @@
 /* Bars or plates. */
 typedef struct {
     int side;
-    int *row;    /* [rows][side] the lists: lists->bar or lists->plate */
-    int *uses;   /* [rows] how many plates (regions) name this bar (plate); 0: free */
-    int *next;   /* [rows] the next in its bucket or list of free rows, or 0 */
-    int *bucket; /* [mask + 1] the first row with this hash, or 0 */
+    int *row;         /* [rows][side] the lists: lists->bar or lists->plate */
+    const int *shift; /* [planes] bar_shift or plate_shift */
+    int *uses;        /* [rows] how many plates (regions) name this bar (plate); 0: free */
+    int *next;        /* [rows] the next in its bucket or list of free rows, or 0 */
+    int *bucket;      /* [mask + 1] the first row with this hash, or 0 */
     uint64_t mask;
-    int *free_row;     /* [planes + 1] first row given back, at the end of its layer's planes */
-    const long *limit; /* [planes + 1] lists->bar_plane or plate_plane */
-    long *end;         /* [planes + 1] lists->bar_end or plate_end */
+    int *free_row;          /* [layers] the first row given back */
+    const int *layer_plane; /* [layers + 1] its first plane */
+    const long *limit;      /* [planes + 1] lists->bar_plane or plate_plane */
+    long *end;              /* [planes + 1] lists->bar_end or plate_end */
 } LsmRowStore;
 
 typedef struct {
     LsmRowStore bars, plates;
-    int *layer_end; /* [planes] the plane behind the layer of each plane */
+    int *layer; /* [planes] */
 } LsmListAllocator;
 
 /* Gives each layer (planes layer_plane[l] .. layer_plane[l + 1] - 1) a quarter more rows and
- * `spare` on top, and opens the books: rows get new numbers. O(rows). */
-void lsm_allocator_open(LsmLists *lists, int layers, const int *layer_plane, long spare,
-                        LsmListAllocator *allocator);
+ * `spare` on top: rows get new numbers, which still are their places. O(rows). */
+void lsm_allocator_make_room(LsmLists *lists, int layers, const int *layer_plane, long spare);
+
+/* Opens the books of lists that have room and their places; region_plane[region_count]. O(rows). */
+void lsm_allocator_open(LsmLists *lists, int layers, const int *layer_plane,
+                        const int *region_plane, LsmListAllocator *allocator);
 void lsm_allocator_free(LsmListAllocator *allocator);
 
 /* Lists the members `rows` (region.h) of particle p as row `region` of the lists, in place of what

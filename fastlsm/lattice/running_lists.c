@@ -9,8 +9,8 @@ typedef struct {
     int side, start;
     long rows;
     const int *number; /* [rows] rows are known by; NULL: themselves */
-    long *first;       /* [planes] the number of a plane's first row .. */
-    long *member;      /* .. and of its members' first */
+    const int *shift;  /* of that number (subsum_lists.h) .. */
+    const int *member; /* .. and of its members' */
     bool along_z;      /* members are of the planes of their places */
     char *depth;       /* [rows] rows of the running up to this one; 0: not met yet */
     char *way, *times; /* [rows] as in LsmGroup */
@@ -116,24 +116,24 @@ static void meet(const Kind *kind, long r)
     kind->times[r] = (char)count;
 }
 
-/* The number of the member at place i of row r; 0 where there is none. */
-static int member(const Kind *kind, long r, int i)
+/* The number of the member at place i of row r, of plane z; 0 where there is none. */
+static int member(const Kind *kind, long r, int i, int z)
 {
-    return r == 0 || i >= kind->side ? 0 : row_of(kind, r)[i] / LSM_NAME;
+    return r == 0 || i >= kind->side ? 0 : lsm_named(kind->member, z, row_of(kind, r)[i]);
 }
 
 /* Bases of the bars of a plate, from the same plates of the regions one step back along x, y, z. */
-static void choose_bars(const Builder *b, int plate, int x, int y, int z)
+static void choose_bars(const Builder *b, int plate, int x, int y, int beside_z, int z)
 {
     for (int i = 0; i < b->bar.side; i++) {
-        int r = member(&b->plate, plate, i);
+        int r = member(&b->plate, plate, i, z);
         if (!r || b->bar.depth[r]) continue;
-        long back_x = member(&b->plate, x, i), beside_y = member(&b->plate, y, i + 1);
-        long beside_z = member(&b->plate, z, i);
+        long back_x = member(&b->plate, x, i, z), along_y = member(&b->plate, y, i + 1, z),
+             along_z = member(&b->plate, beside_z, i, z);
         meet(&b->bar, r);
         offer(&b->bar, r, 2 * back_x + 1);
-        if (beside_y != r) offer(&b->bar, r, 2 * beside_y);
-        if (beside_z != r) offer(&b->bar, r, 2 * beside_z);
+        if (along_y != r) offer(&b->bar, r, 2 * along_y);
+        if (along_z != r) offer(&b->bar, r, 2 * along_z);
     }
 }
 
@@ -151,11 +151,12 @@ static void choose(const Builder *b, long p)
     const int *at = b->lattice->coord[p];
     long x = beside(b, at, 0), y = beside(b, at, 1), z = beside(b, at, 2);
     for (int c = 0; c < b->plate.side; c++) {
-        int r = member(&b->region, p + 1, c), back_y = member(&b->region, y, c),
-            beside_z = member(&b->region, z, c + 1);
+        int plane = at[2] + c - b->plate.side / 2, r = member(&b->region, p + 1, c, plane),
+            back_y = member(&b->region, y, c, plane),
+            beside_z = member(&b->region, z, c + 1, plane);
         if (!r || b->plate.depth[r]) continue;
         meet(&b->plate, r);
-        choose_bars(b, r, member(&b->region, x, c), back_y, beside_z);
+        choose_bars(b, r, member(&b->region, x, c, plane), back_y, beside_z, plane);
         offer(&b->plate, r, 2L * back_y + 1);
         if (beside_z != r) offer(&b->plate, r, 2L * beside_z);
     }
@@ -174,44 +175,35 @@ static void open_kind(Kind *kind, const int *list, int side, int start, long row
 
 static int row_name(const Kind *kind, int z, long r)
 {
-    long number = kind->number ? kind->number[r - 1] + 1 : r;
-    return LSM_NAME * (int)(number - kind->first[z] + 1);
-}
-
-/* Of a member, by its name in the list, of a row of plane z. */
-static int member_name(const Kind *kind, int z, int place, int name)
-{
-    int plane = kind->along_z ? z + place - kind->side / 2 - 1 : z;
-    return name ? name - LSM_NAME * (int)(kind->member[plane] - 1) : 0;
+    return lsm_name(kind->shift, z, kind->number ? kind->number[r - 1] : r);
 }
 
 /* Members t and t + 1 of either kind. */
-static void write_changes(const Kind *kind, int z, const Change *change, int t, int *record)
+static void write_changes(const Change *change, int t, int *record)
 {
     uint32_t places = 0;
     for (int i = 0; i < 4; i++) {
         const Members *of = i % 2 ? &change->leave : &change->enter;
         int at = t + i / 2;
-        record[i] = member_name(kind, z, of->place[at], of->name[at]);
+        record[i] = of->name[at];
         places |= (uint32_t)of->place[at] << 8 * i;
     }
     memcpy(record + 4, &places, sizeof places);
 }
 
-static void write_listed(const Kind *kind, int z, long r, int *record)
+static void write_listed(const Kind *kind, long r, int *record)
 {
     int first, count;
     find_span(kind, r, &first, &count);
     record[1] = first + 1;
-    for (int i = 0; i < count; i++)
-        record[2 + i] = member_name(kind, z, first + 1 + i, row_of(kind, r)[first + i]);
+    memcpy(record + 2, row_of(kind, r) + first, (size_t)count * sizeof *record);
 }
 
 static void write_record(const Kind *kind, int z, long r, int *record)
 {
     record[0] = row_name(kind, z, r);
     if (kind->way[r] == LSM_LISTED) {
-        write_listed(kind, z, r, record);
+        write_listed(kind, r, record);
         return;
     }
     long base = kind->base[r] / 2;
@@ -219,13 +211,13 @@ static void write_record(const Kind *kind, int z, long r, int *record)
     Change change = change_of(kind, r, base, moved);
     record[1] = row_name(kind, z, base);
     if (kind->way[r] == LSM_MOVED) {
-        record[2] = member_name(kind, z, kind->side, change.enter.name[0]);
-        record[3] = member_name(kind, z, 0, change.leave.name[0]);
+        record[2] = change.enter.name[0];
+        record[3] = change.leave.name[0];
         return;
     }
     record[1] += moved;
     for (int t = 0; t < kind->times[r]; t++)
-        write_changes(kind, z, &change, 2 * t, record + 2 + LSM_CHANGES * t);
+        write_changes(&change, 2 * t, record + 2 + LSM_CHANGES * t);
 }
 
 /* Groups of a plane in their order: listed rows, by their members; then, as far down a run, those
@@ -284,25 +276,20 @@ static void close_kind(Kind *kind, int planes, const long *first, LsmRunningList
 }
 
 void lsm_running_lists_build(const LsmLattice *l, const int *slot, const LsmLists *lists,
-                             int layers, const int *layer_plane, const long *layer_slot,
-                             LsmRunningLists *running)
+                             int layers, const int *layer_plane, LsmRunningLists *running)
 {
     Builder b = {.lattice = l};
     int side = lists->side, planes = lists->planes;
-    long *slots = sm_alloc((size_t)planes, sizeof *slots), /* 1 + its layer's first slot */
-        *region = sm_alloc((size_t)planes + 1, sizeof *region);
+    long *region = sm_alloc((size_t)planes + 1, sizeof *region);
     b.layer = sm_alloc((size_t)planes, sizeof(int));
     for (int layer = 0; layer < layers; layer++)
-        for (int z = layer_plane[layer]; z < layer_plane[layer + 1]; z++) {
-            b.layer[z] = layer;
-            slots[z] = layer_slot[layer] + 1;
-        }
+        for (int z = layer_plane[layer]; z < layer_plane[layer + 1]; z++) b.layer[z] = layer;
     open_kind(&b.bar, lists->bar, side, 0, lists->bar_count);
     open_kind(&b.plate, lists->plate, side, 0, lists->plate_count);
     open_kind(&b.region, lists->region, side, 1, lists->region_count + 1);
-    b.bar.first = b.plate.member = lists->bar_plane;
-    b.plate.first = b.region.member = lists->plate_plane;
-    b.bar.member = b.region.first = slots;
+    b.bar.shift = b.plate.member = lists->bar_shift;
+    b.plate.shift = b.region.member = lists->plate_shift;
+    b.bar.member = b.region.shift = lists->slot_shift;
     b.region.number = slot;
     b.region.along_z = true;
     for (long p = 0; p < l->count; p++) {
@@ -314,7 +301,7 @@ void lsm_running_lists_build(const LsmLattice *l, const int *slot, const LsmList
     close_kind(&b.bar, planes, lists->bar_plane, &running->bar);
     close_kind(&b.plate, planes, lists->plate_plane, &running->plate);
     close_kind(&b.region, planes, region, &running->region);
-    sm_free_all(b.layer, slots, region);
+    sm_free_all(b.layer, region);
 }
 
 long lsm_running_additions(const LsmRunningList *list)

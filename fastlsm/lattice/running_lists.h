@@ -21,8 +21,7 @@
 
 enum { LSM_RUN_MOST = 16 };
 
-/* What a row's record holds. Names (subsum_lists.h) count from the first row of a plane of bars or
- * plates, or slot of a layer, which is 1. Places are one of -w-1 .. w, plus w + 1. */
+/* What a row's record holds, by the lists' names. Places are one of -w-1 .. w, plus w + 1. */
 typedef enum {
     LSM_MOVED,   /* row, base one place back, the member that enters at w, that which leaves at
                     -w-1 */
@@ -58,11 +57,9 @@ typedef struct {
 } LsmRunningLists;
 
 /* Running lists for the lists of all particles of a lattice, which are numbered by `slot`. Layer l
- * has the planes layer_plane[l] .. layer_plane[l + 1] - 1, and layer_slot[l] is its first slot.
- * O(rows w). */
+ * has the planes layer_plane[l] .. layer_plane[l + 1] - 1. O(rows w). */
 void lsm_running_lists_build(const LsmLattice *lattice, const int *slot, const LsmLists *lists,
-                             int layers, const int *layer_plane, const long *layer_slot,
-                             LsmRunningLists *running_lists);
+                             int layers, const int *layer_plane, LsmRunningLists *running_lists);
 void lsm_running_lists_free(LsmRunningLists *running_lists);
 
 /* Additions that its rows take: members that enter, leave or are listed. */

@@ -82,8 +82,8 @@ struct LsmListsBuilder {
     long region_count, region_room;
 };
 
-void lsm_lists_bar(const LsmLattice *l, const int *slot, int w, int x, int y, int z, uint64_t bits,
-                   int *row)
+void lsm_lists_bar(const LsmLattice *l, const int *slot, int slot_shift, int w, int x, int y, int z,
+                   uint64_t bits, int *row)
 {
     memset(row, 0, (size_t)(2 * w + 1) * sizeof *row);
     int last = __builtin_ctzll(bits);
@@ -94,7 +94,7 @@ void lsm_lists_bar(const LsmLattice *l, const int *slot, int w, int x, int y, in
             p = lsm_lattice_find(l, x - w + a, y, z);
         else
             p += a - last; /* particles of a run along x are numbered in a row */
-        row[a] = LSM_NAME * (slot[p] + 1);
+        row[a] = LSM_NAME * (slot[p] + slot_shift);
         last = a;
     }
 }
@@ -106,7 +106,7 @@ static int add_bar(LsmListsBuilder *b, int x, int y, int z, uint64_t bits)
     if (!bits) return 0;
     long centre = lsm_lattice_find(b->lattice, x, y, z);
     if (centre >= 0 && b->recent_bits[centre] == bits) return b->recent_bar[centre];
-    lsm_lists_bar(b->lattice, b->slot, b->w, x, y, z, bits, row);
+    lsm_lists_bar(b->lattice, b->slot, 1, b->w, x, y, z, bits, row);
     row[b->side] = x;
     row[b->side + 1] = z;
     int r = pool_add(&b->bars, row);
@@ -232,12 +232,43 @@ void lsm_lists_close(LsmListsBuilder *b, LsmLists *lists)
     lists->region = sm_realloc(b->region, places ? places : 1, sizeof(int));
     name_rows(lists->plate, lists->plate_count * side, bar_number);
     name_rows(lists->region, lists->region_count * side, plate_number);
+    int **shift[] = {&lists->bar_shift, &lists->plate_shift, &lists->slot_shift};
+    for (int i = 0; i < 3; i++) *shift[i] = sm_alloc((size_t)planes, sizeof(int));
+    for (int z = 0; z < planes; z++) lists->slot_shift[z] = 1;
     free(bar_number);
     free(plate_number);
     free(b->recent_bar);
     free(b->recent_bits);
     free(b->full_plate);
     free(b);
+}
+
+static void shift_names(int *name, long count, int shift)
+{
+    for (long i = 0; i < count; i++)
+        if (name[i]) name[i] += LSM_NAME * shift;
+}
+
+void lsm_lists_place(LsmLists *lists, int *bar_shift, int *plate_shift, int *slot_shift,
+                     const int *region_plane)
+{
+    int side = lists->side;
+    for (int z = 0; z < lists->planes; z++) {
+        long bar = lists->bar_plane[z], plate = lists->plate_plane[z];
+        shift_names(lists->bar + bar * side, (lists->bar_end[z + 1] - bar) * side,
+                    slot_shift[z] - lists->slot_shift[z]);
+        shift_names(lists->plate + plate * side, (lists->plate_end[z + 1] - plate) * side,
+                    bar_shift[z] - lists->bar_shift[z]);
+    }
+    for (long i = 0; i < lists->region_count * side; i++) {
+        int z = region_plane[i / side] + (int)(i % side) - lists->w;
+        if (lists->region[i])
+            shift_names(lists->region + i, 1, plate_shift[z] - lists->plate_shift[z]);
+    }
+    sm_free_all(lists->bar_shift, lists->plate_shift, lists->slot_shift);
+    lists->bar_shift = bar_shift;
+    lists->plate_shift = plate_shift;
+    lists->slot_shift = slot_shift;
 }
 
 void lsm_lists_free(LsmLists *lists)
@@ -249,5 +280,6 @@ void lsm_lists_free(LsmLists *lists)
     free(lists->plate_plane);
     free(lists->bar_end);
     free(lists->plate_end);
+    sm_free_all(lists->bar_shift, lists->plate_shift, lists->slot_shift);
     memset(lists, 0, sizeof *lists);
 }

@@ -7,8 +7,9 @@
  * and loops have a fixed length; an absent member is row 0, which always holds zero. Because
  * membership is symmetric the same lists sum regions over a particle.
  *
- * A list names its members: a row's name is its number times LSM_NAME bytes, so that the row's
- * address is base + name * (2, 4 or 8 in single precision), which a load computes by itself. */
+ * A list names its members: a row's name is its place in memory times LSM_NAME bytes, so that the
+ * row's address is base + name * (2, 4 or 8 in single precision), which a load computes by itself.
+ * Its place is its number until lsm_lists_place() says otherwise; that of a slot is one more. */
 #ifndef LSM_SUBSUM_LISTS_H
 #define LSM_SUBSUM_LISTS_H
 
@@ -29,7 +30,19 @@ typedef struct {
     long *bar_end;     /* [planes + 1] bars of plane z end before bar_end[z + 1]; what follows up
                           to bar_plane[z + 1] is spare (list_allocator.h) */
     long *plate_end;   /* [planes + 1] */
+    int *bar_shift, *plate_shift, *slot_shift; /* [planes] from a number to its place */
 } LsmLists;
+
+/* The name of row `number` of plane z, not 0, and its number (0: absent). */
+static inline int lsm_name(const int *shift, int z, long number)
+{
+    return LSM_NAME * (int)(number + shift[z]);
+}
+
+static inline int lsm_named(const int *shift, int z, int name)
+{
+    return name ? name / LSM_NAME - shift[z] : 0;
+}
 
 typedef struct LsmListsBuilder LsmListsBuilder;
 
@@ -48,9 +61,13 @@ void lsm_lists_add(LsmListsBuilder *builder, long p, const uint64_t *rows);
 void lsm_lists_close(LsmListsBuilder *builder, LsmLists *lists);
 void lsm_lists_free(LsmLists *lists);
 
+/* Names by other shifts, which the lists then own; region_plane[region_count]. O(names). */
+void lsm_lists_place(LsmLists *lists, int *bar_shift, int *plate_shift, int *slot_shift,
+                     const int *region_plane);
+
 /* The bar of centre column x in row (y, z) whose members are `bits` (not 0): [2w+1] names. */
-void lsm_lists_bar(const LsmLattice *lattice, const int *slot, int w, int x, int y, int z,
-                   uint64_t bits, int *row);
+void lsm_lists_bar(const LsmLattice *lattice, const int *slot, int slot_shift, int w, int x, int y,
+                   int z, uint64_t bits, int *row);
 
 uint64_t lsm_lists_hash(const int *row, int width);
 

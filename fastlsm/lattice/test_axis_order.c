@@ -22,8 +22,8 @@ static SmLayout choose_box(int x, int y, int z, int width)
     return layout;
 }
 
-/* Fix-ups are what costs in an irregular body, and narrow vectors have no fewer of them (but for
- * large ones at w = 1, which have few). */
+/* Regions that are no boxes are what costs in an irregular body, and narrow vectors have no fewer
+ * of them. */
 TEST(an_irregular_body_has_one_layout)
 {
     unsigned seed = 5;
@@ -45,7 +45,7 @@ TEST(an_irregular_body_has_one_layout)
     assert_in_range(blocks, 5, 55); /* both are met */
 }
 
-/* A box needs no fix-ups: blocks, where its lanes are half full, along its best axis. */
+/* All regions of a box are boxes: blocks, where its lanes are half full, along its best axis. */
 TEST(a_box_goes_by_its_lanes)
 {
     for (int i = 0; i < 3; i++) {

@@ -20,6 +20,8 @@ typedef struct {
     uint64_t (*rows)[WINDOW]; /* [regions] */
     LsmLists lists;
     LsmListAllocator allocator;
+    int *region_plane;            /* [regions] */
+    int **bar, **plate, **region; /* the lists, by numbers (1 + slot) in place of names */
 } Listed;
 
 static void build_lists(Listed *b)
@@ -28,6 +30,64 @@ static void build_lists(Listed *b)
     for (long r = 0; r < b->regions; r++) lsm_lists_add(builder, b->centre[r], b->rows[r]);
     lsm_lists_close(builder, &b->lists);
     assert_int_equal(b->lists.region_count, b->regions);
+}
+
+static int layer_of(const Listed *b, int z)
+{
+    int layer = 0;
+    while (b->layer_plane[layer + 1] <= z) layer++;
+    return layer;
+}
+
+/* Rows, or slots, of a layer are somewhere in memory, one after the other. */
+static int *some_shifts(unsigned *seed, const Listed *b, const long *first)
+{
+    int *shift = sm_alloc((size_t)b->lists.planes, sizeof *shift);
+    for (int l = 0; l < b->layers; l++) {
+        int at = 1 + random_int(seed, 50) - (int)first[b->layer_plane[l]];
+        for (int z = b->layer_plane[l]; z < b->layer_plane[l + 1]; z++) shift[z] = at;
+    }
+    return shift;
+}
+
+static void place_lists(unsigned *seed, Listed *b)
+{
+    LsmLists *l = &b->lists;
+    long *slot = sm_alloc((size_t)l->planes, sizeof *slot);
+    for (long p = b->lattice.count; p-- > 0;)
+        slot[b->layer_plane[layer_of(b, b->lattice.coord[p][2])]] = b->slot[p];
+    int *bar = some_shifts(seed, b, l->bar_plane), *plate = some_shifts(seed, b, l->plate_plane);
+    lsm_lists_place(l, bar, plate, some_shifts(seed, b, slot), b->region_plane);
+    free(slot);
+}
+
+/* Names of members of plane z, in numbers: these are off by `more`. */
+static void copy_numbers(const int *name, long count, const int *shift, int z, int more, int *out)
+{
+    for (long i = 0; i < count; i++) {
+        assert_int_equal(name[i] % LSM_NAME, 0);
+        out[i] = name[i] ? lsm_named(shift, z, name[i]) + more : 0;
+    }
+}
+
+static void number_lists(const Listed *b)
+{
+    const LsmLists *l = &b->lists;
+    int side = b->side;
+    sm_free_all(*b->bar, *b->plate, *b->region);
+    *b->bar = sm_copy(l->bar, (size_t)(l->bar_count * side), sizeof(int));
+    *b->plate = sm_copy(l->plate, (size_t)(l->plate_count * side), sizeof(int));
+    *b->region = sm_copy(l->region, (size_t)(l->region_count * side), sizeof(int));
+    for (int z = 0; z < l->planes; z++) {
+        long bar = l->bar_plane[z] * side, plate = l->plate_plane[z] * side;
+        copy_numbers(l->bar + bar, l->bar_end[z + 1] * side - bar, l->slot_shift, z, 1,
+                     *b->bar + bar);
+        copy_numbers(l->plate + plate, l->plate_end[z + 1] * side - plate, l->bar_shift, z, 0,
+                     *b->plate + plate);
+    }
+    for (long i = 0; i < l->region_count * side; i++)
+        copy_numbers(l->region + i, 1, l->plate_shift,
+                     b->region_plane[i / side] + (int)(i % side) - b->w, 0, *b->region + i);
 }
 
 /* A body of a kind of test_bodies.h, or a plate on which runs are at their longest; of layers of
@@ -47,6 +107,10 @@ static void listed_open(unsigned *seed, int kind, int w, double share, Listed *b
     b->layer_plane = sm_alloc((size_t)planes + 1, sizeof *b->layer_plane);
     b->centre = sm_alloc(n, sizeof *b->centre);
     b->rows = sm_alloc(n, sizeof *b->rows);
+    b->region_plane = sm_alloc(n, sizeof *b->region_plane);
+    b->bar = sm_alloc(1, sizeof *b->bar);
+    b->plate = sm_alloc(1, sizeof *b->plate);
+    b->region = sm_alloc(1, sizeof *b->region);
     for (int z = 0; z < planes; z = b->layer_plane[b->layers]) {
         z += 1 + random_int(seed, 4);
         b->layer_plane[++b->layers] = z < planes ? z : planes;
@@ -56,6 +120,7 @@ static void listed_open(unsigned *seed, int kind, int w, double share, Listed *b
         b->slot[p] = (int)slot;
         if (p && random_unit(seed) >= share) continue;
         lsm_region_rows(&b->lattice, &b->interior, p, b->rows[b->regions]);
+        b->region_plane[b->regions] = b->lattice.coord[p][2];
         b->centre[b->regions++] = p;
     }
     build_lists(b);
@@ -67,21 +132,8 @@ static void listed_free(Listed *b)
     lsm_interior_free(&b->interior);
     lsm_lattice_free(&b->lattice);
     sm_voxels_free(&b->voxels);
-    sm_free_all(b->slot, b->layer_plane, b->centre, b->rows);
-}
-
-static int layer_of(const Listed *b, int z)
-{
-    int layer = 0;
-    while (b->layer_plane[layer + 1] <= z) layer++;
-    return layer;
-}
-
-/* The row that place i of a list names, or 0. */
-static int named_at(const int *list, int i)
-{
-    assert_int_equal(list[i] % LSM_NAME, 0);
-    return list[i] / LSM_NAME;
+    sm_free_all(b->slot, b->layer_plane, b->centre, b->rows, b->region_plane);
+    sm_free_all(*b->bar, *b->plate, *b->region, b->bar, b->plate, b->region);
 }
 
 /* The row is one of the layer of plane z, and in use. */
@@ -99,7 +151,7 @@ static void assert_bar(const Listed *body, const int *bar, const int centre[3], 
     for (int i = 0; i < body->side; i++) {
         long p =
             lsm_lattice_find(&body->lattice, centre[0] + i - body->w, centre[1] + b, centre[2] + c);
-        assert_int_equal(named_at(bar, i), bits >> i & 1 ? body->slot[p] + 1 : 0);
+        assert_int_equal(bar[i], bits >> i & 1 ? body->slot[p] + 1 : 0);
     }
 }
 
@@ -108,12 +160,12 @@ static void assert_region(const Listed *b, long r)
     const LsmLists *l = &b->lists;
     const int *at = b->lattice.coord[b->centre[r]];
     for (int c = 0; c < b->side; c++) {
-        int plate = named_at(l->region + r * b->side, c), z = at[2] + c - b->w;
+        int plate = (*b->region)[r * b->side + c], z = at[2] + c - b->w;
         if (plate) assert_row_of(b, plate, l->plate_plane, l->plate_end, z);
         for (int i = 0; i < b->side; i++) {
-            int bar = named_at(l->plate + (long)plate * b->side, i);
+            int bar = (*b->plate)[(long)plate * b->side + i];
             if (bar) assert_row_of(b, bar, l->bar_plane, l->bar_end, z);
-            assert_bar(b, l->bar + (long)bar * b->side, at, i - b->w, c - b->w,
+            assert_bar(b, *b->bar + (long)bar * b->side, at, i - b->w, c - b->w,
                        b->rows[r][c * b->side + i]);
         }
     }
@@ -132,7 +184,7 @@ static long assert_rows(const int *list, int side, long count, const int *naming
     bool *used = sm_alloc((size_t)count, sizeof *used);
     int *rows = sm_alloc((size_t)(count * side), sizeof *rows);
     long in_use = 0;
-    for (long i = 0; i < names; i++) used[naming[i] / LSM_NAME] = true;
+    for (long i = 0; i < names; i++) used[naming[i]] = true;
     for (long r = 0; r < count; r++) {
         for (int i = 0; i < side && (r == 0 || !used[r]); i++)
             assert_int_equal(list[r * side + i], 0);
@@ -151,9 +203,10 @@ static long assert_rows(const int *list, int side, long count, const int *naming
 static long assert_lists(const Listed *b)
 {
     const LsmLists *l = &b->lists;
+    number_lists(b);
     for (long r = 0; r < b->regions; r++) assert_region(b, r);
-    return assert_rows(l->bar, b->side, l->bar_count, l->plate, l->plate_count * b->side) +
-           assert_rows(l->plate, b->side, l->plate_count, l->region, b->regions * b->side);
+    return assert_rows(*b->bar, b->side, l->bar_count, *b->plate, l->plate_count * b->side) +
+           assert_rows(*b->plate, b->side, l->plate_count, *b->region, b->regions * b->side);
 }
 
 TEST(lists_name_the_members_of_regions_once)
@@ -162,8 +215,11 @@ TEST(lists_name_the_members_of_regions_once)
     for (int trial = 0; trial < 48; trial++) {
         Listed b;
         listed_open(&seed, trial % 6, 1 + trial / 6 % 4, trial % 5 ? 1 : 0.4, &b);
-        /* built without spare rows: all are in use but row 0 */
-        assert_int_equal(assert_lists(&b), b.lists.bar_count + b.lists.plate_count - 2);
+        for (int placed = 0; placed < 3; placed++) {
+            /* built without spare rows: all are in use but row 0 */
+            assert_int_equal(assert_lists(&b), b.lists.bar_count + b.lists.plate_count - 2);
+            place_lists(&seed, &b);
+        }
         listed_free(&b);
     }
 }
@@ -190,7 +246,7 @@ static void choose_rows(unsigned *seed, const Listed *b, long r, uint64_t *rows)
 static void assert_store(const Listed *b, const LsmRowStore *store, const int *naming, long names)
 {
     int *uses = sm_alloc((size_t)store->limit[b->lists.planes], sizeof *uses);
-    for (long i = 0; i < names; i++) uses[naming[i] / LSM_NAME]++;
+    for (long i = 0; i < names; i++) uses[naming[i]]++;
     for (int l = 0; l < b->layers; l++) {
         long first = store->limit[b->layer_plane[l]], unused = 0;
         int behind = b->layer_plane[l + 1];
@@ -198,7 +254,7 @@ static void assert_store(const Listed *b, const LsmRowStore *store, const int *n
             assert_int_equal(store->uses[r], uses[r]);
             unused += !uses[r];
         }
-        for (int r = store->free_row[behind]; r; r = store->next[r], unused--)
+        for (int r = store->free_row[l]; r; r = store->next[r], unused--)
             assert_true(r >= first && r < store->end[behind] && !uses[r]);
         assert_int_equal(unused, 0);
     }
@@ -209,8 +265,8 @@ static void assert_allocator(const Listed *b)
 {
     const LsmLists *l = &b->lists;
     assert_lists(b);
-    assert_store(b, &b->allocator.bars, l->plate, l->plate_count * b->side);
-    assert_store(b, &b->allocator.plates, l->region, b->regions * b->side);
+    assert_store(b, &b->allocator.bars, *b->plate, l->plate_count * b->side);
+    assert_store(b, &b->allocator.plates, *b->region, b->regions * b->side);
 }
 
 /* Is some layer out of rows of a kind? */
@@ -218,15 +274,17 @@ static bool some_layer_is_full(const Listed *b, const LsmRowStore *store)
 {
     for (int l = 0; l < b->layers; l++) {
         int behind = b->layer_plane[l + 1];
-        if (store->end[behind] == store->limit[behind] && !store->free_row[behind]) return true;
+        if (store->end[behind] == store->limit[behind] && !store->free_row[l]) return true;
     }
     return false;
 }
 
-static void open_allocator(Listed *b, long spare)
+static void open_allocator(unsigned *seed, Listed *b, long spare)
 {
     long bars = b->lists.bar_count, plates = b->lists.plate_count;
-    lsm_allocator_open(&b->lists, b->layers, b->layer_plane, spare, &b->allocator);
+    lsm_allocator_make_room(&b->lists, b->layers, b->layer_plane, spare);
+    place_lists(seed, b);
+    lsm_allocator_open(&b->lists, b->layers, b->layer_plane, b->region_plane, &b->allocator);
     assert_true(b->lists.bar_count >= bars + b->layers * spare);
     assert_true(b->lists.plate_count >= plates + b->layers * spare);
     assert_allocator(b);
@@ -237,7 +295,7 @@ static void open_allocator(Listed *b, long spare)
 static int change_lists(unsigned *seed, Listed *b, int changes, long spare)
 {
     int rebuilt = 0;
-    open_allocator(b, spare);
+    open_allocator(seed, b, spare);
     for (int i = 0; i < changes; i++) {
         long r = random_int(seed, (int)b->regions);
         choose_rows(seed, b, r, b->rows[r]);
@@ -248,7 +306,7 @@ static int change_lists(unsigned *seed, Listed *b, int changes, long spare)
             lsm_allocator_free(&b->allocator);
             lsm_lists_free(&b->lists);
             build_lists(b);
-            open_allocator(b, spare);
+            open_allocator(seed, b, spare);
             rebuilt++;
         }
         if (i % 8 == 0) assert_allocator(b);
@@ -288,17 +346,18 @@ static void sum_list(const int *list, int side, const int *value, long *sum, lon
 {
     *sum = *moment = 0;
     for (int i = 0; i < side; i++) {
-        *sum += value[list[i] / LSM_NAME];
-        *moment += (i - side / 2) * (long)value[list[i] / LSM_NAME];
+        *sum += value[list[i]];
+        *moment += (i - side / 2) * (long)value[list[i]];
     }
 }
 
-/* Of one kind of rows: their lists, which count from row 0 and name some of `members`; the first
- * row, and the first member, of each plane. */
+/* Of one kind of rows: their lists, which count from row 0 and name some of `members` by number;
+ * the shifts of both. */
 typedef struct {
     const int *list;
     int side, planes;
-    long rows, count, members, *first, *member; /* count: rows that are made */
+    long rows, count, members; /* count: rows that are made */
+    const int *shift, *member;
     bool along_z;
 } Kind;
 
@@ -306,7 +365,7 @@ typedef struct {
 static long value_at(const Kind *kind, const int *value, int z, int place, int name)
 {
     int plane = kind->along_z ? z + place - kind->side / 2 - 1 : z;
-    return name ? value[name / LSM_NAME + kind->member[plane] - 1] : 0;
+    return name ? value[lsm_named(kind->member, plane, name)] : 0;
 }
 
 /* A record sums what its row's list does, if its base, of the same layer and fewer than
@@ -314,10 +373,10 @@ static long value_at(const Kind *kind, const int *value, int z, int place, int n
 static void assert_record(const Kind *kind, int z, LsmGroup group, const int *record,
                           const int *value, int *length)
 {
-    long sum = 0, moment = 0, want, want_moment, r = record[0] / LSM_NAME + kind->first[z] - 1;
+    long sum = 0, moment = 0, want, want_moment, r = lsm_named(kind->shift, z, record[0]);
     int w = kind->side / 2, moved = group.way == LSM_MOVED || record[1] % LSM_NAME;
     if (group.way != LSM_LISTED) {
-        long base = record[1] / LSM_NAME + kind->first[z] - 1;
+        long base = lsm_named(kind->shift, z, record[1]);
         assert_true(record[1] >= LSM_NAME && length[base] > 0);
         length[r] = length[base] + 1;
         sum_list(kind->list + base * kind->side, kind->side, value, &sum, &moment);
@@ -366,22 +425,20 @@ static long assert_running(unsigned *seed, const LsmRunningList *running, const 
     return based;
 }
 
-/* Of the regions of layers: their rows are slots, which count from each layer's first. */
+/* Of regions: their rows are 1 + slots, shifted by `slots`. */
 static long assert_running_regions(unsigned *seed, const Listed *b, const LsmRunningList *running,
-                                   const long *layer_slot)
+                                   const int *slots)
 {
     const LsmLists *l = &b->lists;
     long rows = b->slot[b->lattice.count - 1] + 2;
-    int planes = l->planes, *list = sm_alloc((size_t)(rows * b->side), sizeof *list);
-    long *first = sm_alloc((size_t)planes, sizeof *first);
+    int *list = sm_alloc((size_t)(rows * b->side), sizeof *list);
     for (long p = 0; p < l->region_count; p++)
-        memcpy(list + (b->slot[p] + 1) * b->side, l->region + p * b->side,
+        memcpy(list + (b->slot[p] + 1) * b->side, *b->region + p * b->side,
                (size_t)b->side * sizeof *list);
-    for (int z = 0; z < planes; z++) first[z] = layer_slot[layer_of(b, z)] + 1;
-    Kind region = {list,           b->side, planes,         rows, l->region_count,
-                   l->plate_count, first,   l->plate_plane, true};
+    Kind region = {list,           b->side, l->planes,      rows, l->region_count,
+                   l->plate_count, slots,   l->plate_shift, true};
     long based = assert_running(seed, running, &region);
-    sm_free_all(list, first);
+    free(list);
     return based;
 }
 
@@ -393,32 +450,24 @@ TEST(running_lists_sum_what_lists_do)
         Listed b;
         LsmRunningLists running;
         listed_open(&seed, trial % 7, 2 + trial / 7, 1, &b);
+        if (trial % 3) place_lists(&seed, &b);
+        number_lists(&b);
         const LsmLists *l = &b.lists;
-        long *slots = sm_alloc((size_t)l->planes, sizeof *slots),
-             *layer_slot = sm_alloc((size_t)b.layers, sizeof *layer_slot);
-        for (long p = b.lattice.count; p-- > 0;)
-            layer_slot[layer_of(&b, b.lattice.coord[p][2])] = b.slot[p];
-        for (int z = 0; z < l->planes; z++) slots[z] = layer_slot[layer_of(&b, z)] + 1;
-        lsm_running_lists_build(&b.lattice, b.slot, l, b.layers, b.layer_plane, layer_slot,
-                                &running);
-        Kind bar = {l->bar,
-                    b.side,
-                    l->planes,
-                    l->bar_count,
-                    l->bar_count - 1,
-                    b.slot[b.lattice.count - 1] + 2,
-                    l->bar_plane,
-                    slots,
-                    false},
+        int *slots = sm_copy(l->slot_shift, (size_t)l->planes, sizeof *slots);
+        for (int z = 0; z < l->planes; z++) slots[z]--;
+        lsm_running_lists_build(&b.lattice, b.slot, l, b.layers, b.layer_plane, &running);
+        long members = b.slot[b.lattice.count - 1] + 2;
+        Kind bar = {*b.bar,  b.side,       l->planes, l->bar_count, l->bar_count - 1,
+                    members, l->bar_shift, slots,     false},
              plate = {
-                 l->plate,     b.side,         l->planes,    l->plate_count, l->plate_count - 1,
-                 l->bar_count, l->plate_plane, l->bar_plane, false};
+                 *b.plate,     b.side,         l->planes,    l->plate_count, l->plate_count - 1,
+                 l->bar_count, l->plate_shift, l->bar_shift, false};
         based += assert_running(&seed, &running.bar, &bar) +
                  assert_running(&seed, &running.plate, &plate) +
-                 assert_running_regions(&seed, &b, &running.region, layer_slot);
+                 assert_running_regions(&seed, &b, &running.region, slots);
         rows += l->bar_count + l->plate_count + l->region_count;
         lsm_running_lists_free(&running);
-        sm_free_all(slots, layer_slot);
+        free(slots);
         listed_free(&b);
     }
     assert_true(2 * based > rows);

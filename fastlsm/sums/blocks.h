@@ -41,7 +41,7 @@ struct Blocks {
     int *along_z;       /* [blocks][side] the block at the same place in planes z - w .. z + w; the
                            empty block (number `blocks`) where there is none */
     uint64_t *passable; /* bitmap of the sites whose sums other sites' sums pass through */
-    bool *mixed;        /* [blocks] lists or fix-ups make the sums of some lanes exact */
+    bool *mixed;        /* [blocks] some lanes are summed by their lists */
     real **down;        /* [planes] where a plane's (Q, Rz) sums are kept until phase 2 */
     real *down_memory;
     int threads;

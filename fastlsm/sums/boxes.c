@@ -6,14 +6,13 @@
  * the L1 cache. From w = RUNNING on, sums along y and z are windows that move: O(1). They are
  * summed anew at every RESTART-th row and plane, or rounding would add up. Along x
  * lanes slide, and from w = FAR on prefixes are subtracted. Empty sites hold zero. A region whose
- * box sum is not its exact sum (a gap, a corner, a broken link within its box) is made so by
- * fix-ups (box_sum_fixups.h) or summed by its lists instead, lane by lane. */
+ * box sum is not its exact sum (a gap, a corner, a broken link within its box) is summed by its
+ * lists instead, lane by lane. */
 #include "blocks.h"
 
 #include <string.h>
 
 #include "../../lib/simd/rigid_lanes.h"
-#include "box_sum_fixups.h"
 #include "lists.h"
 #include "prefix_sums.h"
 #include "window.h"
@@ -344,30 +343,15 @@ SM_INLINE void row_up(const Lsm *lsm, const Scratch *s, BlockRow at, int slot, i
     }
 }
 
-/* Where lists or fix-ups make the sums of a block's regions exact. */
-static __attribute__((noinline)) void mend_regions(const Lsm *lsm, long block, bool plain, vec *sum)
+/* The sums of a block's regions where they have lists. */
+static __attribute__((noinline)) void listed_regions(const Lsm *lsm, const Rows *rows, long block,
+                                                     bool plain, vec *sum)
 {
-    if (lsm->fixups) {
-        if (plain)
-            lsm_fixup_products(lsm, block, sum);
-        else
-            lsm_fixup_regions(lsm, block, sum);
-        return;
-    }
-    const int *region = lsm->block_region + block * SM_LANES; /* whose lanes replace box sums */
+    const int *region = lsm->block_region + block * SM_LANES;
     vec listed[12];
-    lsm_list_kernels_regions(lsm, &lsm->rows, region, plain, listed);
+    lsm_list_kernels_regions(lsm, rows, region, plain, listed);
     ivec lanes = listed_lanes(region);
     for (int i = 0; i < 12; i++) sum[i] = lanes_select(lanes, listed[i], sum[i]);
-}
-
-/* Where lists or fix-ups read what a block's regions bring down. */
-static __attribute__((noinline)) void keep_down(const Lsm *lsm, long block, const real *down)
-{
-    if (lsm->fixups)
-        lsm_fixups_keep(lsm, block, down);
-    else
-        lsm_lists_keep_down(lsm, &lsm->rows, block, down);
 }
 
 /* The stage up along y for a column: 9 -> 12 values, of damping 12. */
@@ -387,45 +371,47 @@ SM_INLINE void stage_y_up(const Around *in, long column, int w, bool plain, bool
 }
 
 /* The stage up along y, and `solve` for a group of blocks of a row, into the ring `below`. */
-SM_INLINE void solve_group(Lsm *lsm, const Around *in, const BlockRun *run, int i, int blocks,
-                           int layer, int w, bool plain, bool moving, real *row, SmLaps *laps)
+SM_INLINE void solve_group(Lsm *lsm, const Rows *rows, const Around *in, const BlockRun *run, int i,
+                           int blocks, int layer, int w, bool plain, bool moving, real *row,
+                           SmLaps *laps)
 {
     vec sums[POLAR_TILES][12];
     for (int k = 0; k < blocks; k++) stage_y_up(in, run->column + i + k, w, plain, moving, sums[k]);
     long block = run->first + i;
     real *down = row + (run->column + i) * (long)BLOCK;
     for (int k = 0; k < blocks; k++)
-        if (lsm->box->mixed[block + k]) mend_regions(lsm, block + k, plain, sums[k]);
+        if (lsm->box->mixed[block + k]) listed_regions(lsm, rows, block + k, plain, sums[k]);
     lsm_solve(lsm, plain, layer, block, blocks, sums, down, laps);
     for (int k = 0; k < blocks; k++)
-        if (lsm->listed[block + k]) keep_down(lsm, block + k, down + k * (long)BLOCK);
+        if (lsm->listed[block + k])
+            lsm_lists_keep_down(lsm, rows, block + k, down + k * (long)BLOCK);
     lsm_solved(plain, laps);
 }
 
-SM_INLINE void run_solve(Lsm *lsm, const Around *in, const BlockRun *run, int layer, int w,
-                         bool plain, bool moving, real *row, SmLaps *laps)
+SM_INLINE void run_solve(Lsm *lsm, const Rows *rows, const Around *in, const BlockRun *run,
+                         int layer, int w, bool plain, bool moving, real *row, SmLaps *laps)
 {
     int most = plain ? 1 : POLAR_TILES; /* matching alone gains from several at once */
     for (int i = 0, blocks; i < run->count; i += blocks) {
         int left = run->count - i;
         blocks = left < most ? left : most;
         if (most > 1 && left == most + 1) blocks--; /* no block is left for a group of its own */
-        solve_group(lsm, in, run, i, blocks, layer, w, plain, moving, row, laps);
+        solve_group(lsm, rows, in, run, i, blocks, layer, w, plain, moving, row, laps);
     }
 }
 
 /* The stage up along y and `solve` for the row whose row y + w is in slot `newest` of the ring
  * `above`, into `slot` of the ring `below`. */
-SM_INLINE void row_solve(Lsm *lsm, const Scratch *s, BlockRow at, int newest, int slot, int layer,
-                         int w, bool plain, SmLaps *laps)
+SM_INLINE void row_solve(Lsm *lsm, const Rows *rows, const Scratch *s, BlockRow at, int newest,
+                         int slot, int layer, int w, bool plain, SmLaps *laps)
 {
     real *row = row_for(s, 1, slot, at);
     Around in = rows_around(lsm, s, 0, newest, w);
     for (int i = 0; i < at.runs; i++) {
         if (w >= RUNNING && at.run[i].moves_y)
-            run_solve(lsm, &in, at.run + i, layer, w, plain, true, row, laps);
+            run_solve(lsm, rows, &in, at.run + i, layer, w, plain, true, row, laps);
         else
-            run_solve(lsm, &in, at.run + i, layer, w, plain, false, row, laps);
+            run_solve(lsm, rows, &in, at.run + i, layer, w, plain, false, row, laps);
     }
 }
 
@@ -528,6 +514,7 @@ SM_INLINE void plane_pass(Lsm *lsm, int plane, int thread, int w, bool plain, Sm
     int begin = box->plane_run[plane], end = box->plane_run[plane + 1];
     if (begin == end) return;
     Scratch s = scratch_of(lsm, thread);
+    Rows rows = lsm_rows_of(lsm, plane, thread);
     int first = box->run[begin].y, last = box->run[end - 1].y;
     SmStage stage = lsm->pass->stage;
     for (int slot = s.ring - w; slot < s.ring; slot++) /* above `first` */
@@ -536,7 +523,7 @@ SM_INLINE void plane_pass(Lsm *lsm, int plane, int thread, int w, bool plain, Sm
         int behind = slot < w ? slot - w + s.ring : slot - w; /* of row y - w */
         row_up(lsm, &s, row_at(lsm, plane, y), slot, w, plain);
         sm_lap(laps, stage);
-        row_solve(lsm, &s, row_at(lsm, plane, y - w), slot, behind, plane, w, plain, laps);
+        row_solve(lsm, &rows, &s, row_at(lsm, plane, y - w), slot, behind, plane, w, plain, laps);
         row_down(lsm, &s, row_at(lsm, plane, y - 2 * w), behind, plane, w, plain);
         sm_lap(laps, stage);
         slot = slot + 1 == s.ring ? 0 : slot + 1;
@@ -626,23 +613,12 @@ SM_INLINE void stage_z_down(const Lsm *lsm, const Downs *downs, long block, bool
     for (int f = 0; f < 6; f++) lanes_store(kept + f * SM_LANES, sum[f]);
 }
 
-/* Where lists or fix-ups make the sums of a block's particles exact. */
-static __attribute__((noinline)) void mend_particles(const Lsm *lsm, long block, bool plain,
-                                                     vec *sum)
-{
-    if (!lsm->fixups)
-        lsm_list_kernels.block(lsm, &lsm->rows, block, plain, sum);
-    else if (plain)
-        lsm_fixup_velocities(lsm, block, sum);
-    else
-        lsm_fixup_goals(lsm, block, sum);
-}
-
 /* The stage down along z for the blocks of a plane, and the end of the pass. */
 SM_INLINE void plane_end(Lsm *lsm, int plane, int thread, int w, bool plain, SmLaps *laps)
 {
     const Blocks *box = lsm->box;
     Downs downs = downs_around(lsm, plane, w);
+    Rows rows = lsm_rows_of(lsm, plane, thread);
     for (int r = box->plane_run[plane]; r < box->plane_run[plane + 1]; r++) {
         const BlockRun *run = &box->run[r];
         for (int i = 0; i < run->count; i += POLAR_TILES) {
@@ -654,7 +630,8 @@ SM_INLINE void plane_end(Lsm *lsm, int plane, int thread, int w, bool plain, SmL
                 vec here[6]; /* in registers, which `sum` cannot be */
                 stage_z_down(lsm, &downs, block + k, run->moves_z, thread, w, plain, here);
                 lanes_copy(plain ? 6 : 3, here, sum[k]);
-                if (box->mixed[block + k]) mend_particles(lsm, block + k, plain, sum[k]);
+                if (box->mixed[block + k])
+                    lsm_list_kernels.block(lsm, &rows, block + k, plain, sum[k]);
             }
             lsm_end(lsm, plain, block, blocks, sum, laps);
         }
@@ -690,16 +667,12 @@ TO_WIDTH_7(solve_plain, true, plane_pass)
     }
 enum { WIDTHS = 8 };
 
-static void subsums(Lsm *lsm, int plane, int thread, SmLaps *laps)
-{
-    if (!lsm->fixups) lsm_lists_subsums(lsm, plane, thread, laps);
-}
-
 static void solve(Lsm *lsm, int plane, int thread, SmLaps *laps)
 {
     static LsmPhase *const by_width[2][WIDTHS] = {SOLVE(solve_moments), SOLVE(solve_plain)};
     by_width[lsm->pass->plain][lsm->w < WIDTHS ? lsm->w : 0](lsm, plane, thread, laps);
-    lsm_list_kernels.subsums_down(lsm, &lsm->rows, plane, lsm->pass->plain);
+    Rows rows = lsm_rows_of(lsm, plane, thread);
+    lsm_list_kernels.subsums_down(lsm, &rows, plane, lsm->pass->plain);
     sm_lap(laps, lsm->pass->stage);
 }
 
@@ -721,6 +694,6 @@ const LsmSums lsm_sums_boxes = {
     .applies = applies,
     .lay_out = lsm_blocks_build,
     .share = lsm_blocks_share,
-    .phase = {subsums, solve, end},
+    .phase = {lsm_lists_subsums, solve, end},
     .lists = &lsm_list_kernels,
 };

@@ -40,11 +40,10 @@ SM_INLINE const real *named(const real *rows, uint64_t name, int width)
  * vectors of four. */
 typedef enum { NO_MOMENTS, UP, DOWN } Moments;
 typedef struct {
-    real *const *in;       /* of each place, or, where that is all, of place 0 */
-    bool along_z;          /* of each */
+    const real *in;
     int in_width, vectors; /* values apart, and vectors of four to read */
     real *out;
-    int made; /* vectors of four to write: 2 or 4 */
+    int made; /* and to write, which is their width: 2 or 4 */
     Moments moments;
     int from, to;
 } Level;
@@ -113,33 +112,49 @@ SM_INLINE void sum_store(Sum sum, Level level, const real *base, real *out)
     }
 }
 
+/* Rows as narrow as what is made of them, in room for wide ones: row 0 is zero whatever their
+ * width.
+ */
+SM_INLINE real *narrow(real *rows, int vectors)
+{
+    return rows + ROW_WIDTH - 4 * vectors;
+}
+
 /* The kinds of rows of a pass (sums.h), from the particles up (way 0) or down (1). */
 SM_INLINE Level bar_level(const Rows *rows, int way, bool plain)
 {
+    Level level = {.in = rows->transform, .in_width = ROW_WIDTH, .vectors = 4, .made = 4};
     if (way == 0 && !plain)
-        return (Level){.in = &rows->p, .in_width = ROW_P, .vectors = 1, .made = 2, .moments = UP};
-    Level level = {.in = &rows->transform, .in_width = ROW_T, .vectors = 4, .made = 4};
+        level = (Level){.in = rows->p, .in_width = ROW_P, .vectors = 1, .made = 2, .moments = UP};
     if (way && plain) level.vectors = level.made = 2;
     if (way && !plain) level.moments = DOWN;
     if (way && !plain) level.from = 3;
+    level.out = narrow(rows->bar, level.made);
     return level;
 }
 
 /* `more`: with what rows made from it need. */
 SM_INLINE Level plate_level(const Rows *rows, int way, bool plain, bool more)
 {
-    Level level = {.in = &rows->bar, .in_width = ROW_BAR, .vectors = 2, .made = 2};
+    int made = bar_level(rows, way, plain).made;
+    Level level = {.in = narrow(rows->bar, made), .in_width = 4 * made, .vectors = 2, .made = 2};
     if (way == 0) level.made = 4;
     if ((way == 0 && plain) || (way && !plain && more)) level.vectors = level.made = 4;
+    level.out = narrow(rows->plate[way], level.made);
     if (plain) return level;
     level.moments = way ? DOWN : UP;
     *(way ? &level.from : &level.to) = 2;
     return level;
 }
 
-SM_INLINE Level region_level(int way, bool plain)
+SM_INLINE Level region_level(const Rows *rows, int way, bool plain, bool more)
 {
-    Level level = {.vectors = way ? 2 : 4, .made = way ? 2 : 4};
+    int made = plate_level(rows, way, plain, more).made;
+    Level level = {.in = narrow(rows->plate[way], made),
+                   .in_width = 4 * made,
+                   .vectors = way ? 2 : 4,
+                   .made = way ? 2 : 4};
+    level.out = narrow(rows->transform, level.made);
     if (plain) return level;
     level.moments = way ? DOWN : UP;
     level.from = way ? 1 : 0;
@@ -147,9 +162,9 @@ SM_INLINE Level region_level(int way, bool plain)
     return level;
 }
 
-SM_INLINE Sum member_at(Level level, int place, uint64_t name)
+SM_INLINE Sum member_at(Level level, uint64_t name)
 {
-    return member_of(level, named(level.in[level.along_z ? place : 0], name, level.in_width));
+    return member_of(level, named(level.in, name, level.in_width));
 }
 
 /* The `side` names of a list, two at a time: loads are what the sums wait for. */

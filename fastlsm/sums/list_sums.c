@@ -8,10 +8,10 @@ SM_INLINE Sum list_sum(const int *list, Level level, int side)
     uint64_t name[LSM_MAX_SIDE];
     read_names(list, side, name);
     const uint64_t *centre = name + side / 2;
-    Sum sum = member_at(level, 0, *centre);
+    Sum sum = member_at(level, *centre);
     sum.moment = (vec4){0};
     for (int o = 1; o <= side / 2; o++) {
-        Sum left = member_at(level, 0, centre[-o]), right = member_at(level, 0, centre[o]),
+        Sum left = member_at(level, centre[-o]), right = member_at(level, centre[o]),
             pair = sum_of(level, left, right);
         pair.moment = (real)o * (right.moment - left.moment);
         sum = sum_of(level, sum, pair);
@@ -19,12 +19,12 @@ SM_INLINE Sum list_sum(const int *list, Level level, int side)
     return sum;
 }
 
-/* Rows `first` .. `last` - 1, `width` values apart. */
-SM_INLINE void list_sums(const int *list, long first, long last, real *out, int width, Level level,
-                         int side)
+/* Rows `first` .. `last` - 1. */
+SM_INLINE void list_sums(const int *list, long first, long last, int shift, Level level, int side)
 {
     for (long row = first; row < last; row++)
-        sum_store(list_sum(list + row * side, level, side), level, NULL, out + row * width);
+        sum_store(list_sum(list + row * side, level, side), level, NULL,
+                  level.out + (row + shift) * 4 * level.made);
 }
 
 /* Bars and plates of a layer. */
@@ -33,11 +33,10 @@ SM_INLINE void subsums_of(const Lsm *lsm, const Rows *rows, int layer, int way, 
 {
     const LsmLists *lists = &lsm->lists;
     int first = lsm->layer_plane[layer], last = lsm->layer_plane[layer + 1];
-    list_sums(lists->bar, lists->bar_plane[first], lists->bar_end[last], rows->bar, ROW_BAR,
+    list_sums(lists->bar, lists->bar_plane[first], lists->bar_end[last], lists->bar_shift[first],
               bar_level(rows, way, plain), side);
     list_sums(lists->plate, lists->plate_plane[first], lists->plate_end[last],
-              way ? rows->plate_down : rows->plate, way ? ROW_PLATE_DOWN : ROW_PLATE,
-              plate_level(rows, way, plain, false), side);
+              lists->plate_shift[first], plate_level(rows, way, plain, false), side);
 }
 
 static void subsums_up(const Lsm *lsm, const Rows *rows, int layer, bool plain)
@@ -59,9 +58,7 @@ static void subsums_down(const Lsm *lsm, const Rows *rows, int layer, bool plain
 SM_INLINE void regions_of(const Lsm *lsm, const Rows *rows, const int *region, bool plain, Row *out,
                           int side)
 {
-    Level level = region_level(0, plain);
-    level.in = &rows->plate;
-    level.in_width = ROW_PLATE;
+    Level level = region_level(rows, 0, plain, false);
     for (int lane = 0; lane < SM_LANES; lane++) {
         const int *list = lsm->lists.region + (long)region[lane] * side;
         out[lane] = region[lane] < 0 ? (Row){0} : sum_row(list_sum(list, level, side), level);
@@ -92,9 +89,7 @@ static void tile_sums(const Lsm *lsm, const Rows *rows, long tile, bool plain, v
 SM_INLINE void particles_of(const Lsm *lsm, const Rows *rows, const int *region, bool plain,
                             real (*out)[SM_LANES], int side)
 {
-    Level level = region_level(1, plain);
-    level.in = &rows->plate_down;
-    level.in_width = ROW_PLATE_DOWN;
+    Level level = region_level(rows, 1, plain, false);
     for (int lane = 0; lane < SM_LANES; lane++) {
         if (region[lane] < 0) continue;
         real sum[8];

@@ -57,10 +57,100 @@ void lsm_lists_lay_out(Lsm *lsm)
     for (p = 0; p < n; p++) lsm->particle[lsm->slot[p]] = (int)p;
 }
 
-/* Its rows, for one of the threads. */
-static Rows rows_of(const Lsm *lsm, int layer, int thread)
+void lsm_rows_free(Lsm *lsm)
 {
-    return lsm->running ? lsm_running_rows(lsm, layer, thread) : lsm->rows;
+    for (int t = 0; lsm->rows && t < lsm->threads; t++) {
+        Rows *rows = &lsm->rows[t], *first = &lsm->rows[0];
+        if (t == 0) sm_free_all(rows->plate[0], rows->plate[1]);
+        if (t && rows->p != first->p) sm_free_all(rows->p, rows->transform);
+        free(rows->bar);
+    }
+    if (lsm->rows) sm_free_all(lsm->rows->p, lsm->rows->transform);
+    free(lsm->rows);
+    lsm->rows = NULL;
+}
+
+/* Shifts (subsum_lists.h) to where a plane's rows are among those of its layer, or, `by_plane`, of
+ * itself, which begin at places[layer] + 1. Returns the most of one. */
+static long find_shifts(const Lsm *lsm, const long *plane, bool by_plane, const long *places,
+                        int **shift)
+{
+    long most = 0;
+    *shift = sm_alloc((size_t)lsm->lists.planes, sizeof(int));
+    for (int l = 0; l < lsm->layers; l++)
+        for (int z = lsm->layer_plane[l]; z < lsm->layer_plane[l + 1]; z++) {
+            long first = plane[by_plane ? z : lsm->layer_plane[l]], own = plane[z + 1] - first;
+            (*shift)[z] = (int)((places ? places[l] : 0) + 1 - first);
+            most = own > most ? own : most;
+        }
+    return most;
+}
+
+/* Where each layer's plates begin. Returns how many places there are. */
+static long turn_plates(const Lsm *lsm, long *places)
+{
+    const long *plane = lsm->lists.plate_plane;
+    int *store = sm_alloc((size_t)lsm->layers, sizeof *store);
+    long most = 0, all = lsm->lists.plate_count;
+    int stores = lsm_pipeline_stores(lsm, 2, store);
+    for (int l = 0; l < lsm->layers; l++) {
+        long own = plane[lsm->layer_plane[l + 1]] - plane[lsm->layer_plane[l]];
+        most = own > most ? own : most;
+    }
+    bool turns = stores * most < all; /* or each has its own: one is far larger */
+    for (int l = 0; l < lsm->layers; l++)
+        places[l] = turns ? store[l] * most : plane[lsm->layer_plane[l]] - 1;
+    free(store);
+    return turns ? stores * most : all;
+}
+
+/* The first slot of each plane's layer, or, of all, 0; [planes + 1]. */
+static long *first_slots(const Lsm *lsm, bool all)
+{
+    long *first = sm_alloc((size_t)lsm->lists.planes + 1, sizeof *first);
+    for (int l = 0; l < lsm->layers; l++)
+        for (int z = lsm->layer_plane[l]; z < lsm->layer_plane[l + 1] && !all; z++)
+            first[z] = lsm->layer_block[l] * SM_LANES;
+    first[lsm->lists.planes] = lsm->blocks * SM_LANES;
+    return first;
+}
+
+/* Sums member by member read p and transforms of all layers: these are all threads' then. */
+void lsm_rows_place(Lsm *lsm, const int *region_plane)
+{
+    LsmLists *lists = &lsm->lists;
+    int *bar, *plate, *slot;
+    bool naive = lsm->sums == &lsm_sums_naive;
+    lsm_rows_free(lsm);
+    long *places = sm_alloc((size_t)lsm->layers, sizeof *places), *first = first_slots(lsm, naive);
+    size_t plates = (size_t)turn_plates(lsm, places) + 1,
+           slots = (size_t)find_shifts(lsm, first, false, NULL, &slot) + 1,
+           bars = (size_t)find_shifts(lsm, lists->bar_plane, lsm->sums == &lsm_sums_running, NULL,
+                                      &bar) +
+                  1;
+    find_shifts(lsm, lists->plate_plane, false, places, &plate);
+    lsm_lists_place(lists, bar, plate, slot, region_plane);
+    sm_free_all(places, first);
+    lsm->rows = sm_alloc((size_t)lsm->threads, sizeof *lsm->rows);
+    real *up = sm_alloc(plates * ROW_WIDTH, sizeof(real)),
+         *down = sm_alloc(plates * ROW_WIDTH, sizeof(real));
+    for (int t = 0; t < lsm->threads; t++) {
+        Rows *rows = &lsm->rows[t];
+        if (t && naive)
+            *rows = lsm->rows[0];
+        else
+            *rows = (Rows){.p = sm_alloc(slots * ROW_P, sizeof(real)),
+                           .transform = sm_alloc(slots * ROW_WIDTH, sizeof(real)),
+                           .plate = {up, down}};
+        rows->bar = sm_alloc(bars * ROW_WIDTH, sizeof(real));
+    }
+}
+
+Rows lsm_rows_of(const Lsm *lsm, int layer, int thread)
+{
+    Rows rows = lsm->rows[thread];
+    rows.shift = lsm->lists.slot_shift[lsm->layer_plane[layer]];
+    return rows;
 }
 
 /* Rows of m~ x. */
@@ -86,13 +176,13 @@ static void weigh_products(const Lsm *lsm, const Rows *rows, long block)
         for (int k = 0; k < 4; k++) field[3 * k + d] = part[k];
     }
     for (int lane = 0; lane < SM_LANES; lane++)
-        row[lane] = rows->transform + slot_row(rows, block * SM_LANES + lane) * ROW_T;
+        row[lane] = rows->transform + slot_row(rows, block * SM_LANES + lane) * ROW_WIDTH;
     lanes_to_rows(field, row);
 }
 
 void lsm_lists_subsums(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
-    Rows rows = rows_of(lsm, layer, thread);
+    Rows rows = lsm_rows_of(lsm, layer, thread);
     bool plain = lsm->pass->plain;
     for (long block = lsm->layer_block[layer]; block < lsm->layer_block[layer + 1]; block++) {
         if (lsm->listed && !lsm->listed[block]) continue;
@@ -110,13 +200,13 @@ static void keep_transforms(const Lsm *lsm, const Rows *rows, long tile, const r
 {
     static const int triple[4] = {0, 1, 3, 2};
     vec field[16];
-    real *row[SM_LANES], nobodys[ROW_T];
+    real *row[SM_LANES], nobodys[ROW_WIDTH];
     for (int i = 0; i < 16; i++)
         field[i] =
             i % 4 < 3 ? lanes_load(down + (3 * triple[i / 4] + i % 4) * SM_LANES) : lanes_set(0);
     for (int lane = 0; lane < SM_LANES; lane++) {
         int slot = lsm->tile_slot[tile * SM_LANES + lane];
-        row[lane] = slot < 0 ? nobodys : rows->transform + slot_row(rows, slot) * ROW_T;
+        row[lane] = slot < 0 ? nobodys : rows->transform + slot_row(rows, slot) * ROW_WIDTH;
     }
     lanes_to_rows(field, row);
 }
@@ -132,7 +222,8 @@ static void keep_velocities(const Lsm *lsm, const Rows *rows, long tile, const r
     for (int lane = 0; lane < SM_LANES; lane++) {
         int slot = lsm->tile_slot[tile * SM_LANES + lane];
         if (slot >= 0)
-            half_store(rows->transform + slot_row(rows, slot) * ROW_T, half_load(row + lane * 8));
+            half_store(rows->transform + slot_row(rows, slot) * ROW_WIDTH,
+                       half_load(row + lane * 8));
     }
 }
 
@@ -152,8 +243,8 @@ static void copy_regions(const Lsm *lsm, const Rows *rows, int layer, bool plain
         int to = lsm->copy[i][0], from = lsm->copy[i][1];
         const int *a = lsm->lattice.coord[lsm->particle[to]],
                   *b = lsm->lattice.coord[lsm->particle[from]];
-        real *out = rows->transform + slot_row(rows, to) * ROW_T;
-        const real *in = rows->transform + slot_row(rows, from) * ROW_T;
+        real *out = rows->transform + slot_row(rows, to) * ROW_WIDTH;
+        const real *in = rows->transform + slot_row(rows, from) * ROW_WIDTH;
         if (plain) {
             half_store(out, half_load(in));
             continue;
@@ -166,7 +257,7 @@ static void copy_regions(const Lsm *lsm, const Rows *rows, int layer, bool plain
 
 void lsm_lists_solve(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
-    Rows rows = rows_of(lsm, layer, thread);
+    Rows rows = lsm_rows_of(lsm, layer, thread);
     const LsmListKernels *lists = lsm->sums->lists;
     const LsmPass *pass = lsm->pass;
     vec sum[POLAR_TILES][12];
@@ -189,7 +280,7 @@ void lsm_lists_solve(Lsm *lsm, int layer, int thread, SmLaps *laps)
 
 void lsm_lists_end(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
-    Rows rows = rows_of(lsm, layer, thread);
+    Rows rows = lsm_rows_of(lsm, layer, thread);
     const LsmListKernels *lists = lsm->sums->lists;
     const LsmPass *pass = lsm->pass;
     if (lists->particles) lists->particles(lsm, &rows, layer, pass->plain);

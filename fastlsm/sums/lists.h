@@ -7,7 +7,9 @@
 #include "sums.h"
 
 #define lsm_lists_build_layers   SM_NAME(lsm_lists_build_layers)
-#define lsm_running_rows         SM_NAME(lsm_running_rows)
+#define lsm_rows_place           SM_NAME(lsm_rows_place)
+#define lsm_rows_free            SM_NAME(lsm_rows_free)
+#define lsm_rows_of              SM_NAME(lsm_rows_of)
 #define lsm_running_free         SM_NAME(lsm_running_free)
 #define lsm_lists_lay_out        SM_NAME(lsm_lists_lay_out)
 #define lsm_lists_subsums        SM_NAME(lsm_lists_subsums)
@@ -27,7 +29,7 @@ SM_INLINE long lsm_layer_begin(long slot)
 /* A slot's row of p and transform. */
 SM_INLINE long slot_row(const Rows *rows, long slot)
 {
-    return slot - rows->first + 1;
+    return slot + rows->shift;
 }
 
 /* Groups planes into layers of some hundred particles at least and finds how far a region reaches.
@@ -37,8 +39,14 @@ void lsm_lists_build_layers(Lsm *lsm);
 /* Particles in canonical order, in slots without holes but at the ends of layers. */
 void lsm_lists_lay_out(Lsm *lsm);
 
-/* A layer's rows, in the scratch of a thread (running_sums.c). */
-Rows lsm_running_rows(const Lsm *lsm, int layer, int thread);
+/* Memory for the rows of lists, which are named by their places in it (lsm_lists_place);
+ * region_plane[region_count]. Again where lsm->sums has changed. */
+void lsm_rows_place(Lsm *lsm, const int *region_plane);
+void lsm_rows_free(Lsm *lsm);
+
+/* Those of a layer, for a thread. */
+Rows lsm_rows_of(const Lsm *lsm, int layer, int thread);
+
 void lsm_running_free(LsmRunning *running);
 
 /* The three phases: bars and plates; regions, and bars and plates down; particles. */

@@ -3,27 +3,27 @@
 #include "list_rows.h"
 #include "lists.h"
 
-/* The list of the row of this name. */
-SM_INLINE const int *members(const int *list, int name, int side)
+/* The particles of the bar of plane z that `plate` names at place i. */
+SM_INLINE const int *members(const LsmLists *lists, int z, int plate, int i)
 {
-    return list + (long)(name / LSM_NAME) * side;
+    const int *row = lists->plate + (long)lsm_named(lists->plate_shift, z, plate) * lists->side;
+    return lists->bar + (long)lsm_named(lists->bar_shift, z, row[i]) * lists->side;
 }
 
 /* Bars and plates are summed on their own first, so that single precision adds numbers of like
  * size: wide regions have thousands of members. */
-static Row region_up(const Lsm *lsm, int region)
+static Row region_up(const Lsm *lsm, const Rows *rows, int region)
 {
-    int side = lsm->side, w = lsm->w;
+    int side = lsm->side, w = lsm->w, z = lsm->lattice.coord[region][2];
     const int *plate = lsm->lists.region + (long)region * side;
     vec4 four[4] = {{0}, {0}, {0}, {0}};
     for (int c = -w; c <= w; c++) {
         vec4 flat[4] = {{0}, {0}, {0}, {0}};
         for (int b = -w; b <= w; b++) {
-            const int *bar = members(lsm->lists.plate, plate[c + w], side),
-                      *particle = members(lsm->lists.bar, bar[b + w], side);
+            const int *particle = members(&lsm->lists, z + c, plate[c + w], b + w);
             vec4 sum[4] = {{0}, {0}, {0}, {0}};
             for (int a = -w; a <= w; a++) {
-                vec4 p = load4(named(lsm->rows.p, (uint64_t)particle[a + w], ROW_P));
+                vec4 p = load4(named(rows->p, (uint64_t)particle[a + w], ROW_P));
                 sum[0] += p;
                 sum[1] += (real)a * p;
                 sum[2] += (real)b * p;
@@ -38,19 +38,18 @@ static Row region_up(const Lsm *lsm, int region)
     return row_load(row);
 }
 
-static vec4 particle_down(const Lsm *lsm, int region)
+static vec4 particle_down(const Lsm *lsm, const Rows *rows, int region)
 {
-    int side = lsm->side, w = lsm->w;
+    int side = lsm->side, w = lsm->w, z = lsm->lattice.coord[region][2];
     const int *plate = lsm->lists.region + (long)region * side;
     vec4 sum = {0};
     for (int c = -w; c <= w; c++) {
         vec4 flat = {0};
         for (int b = -w; b <= w; b++) {
-            const int *bar = members(lsm->lists.plate, plate[c + w], side),
-                      *particle = members(lsm->lists.bar, bar[b + w], side);
+            const int *particle = members(&lsm->lists, z + c, plate[c + w], b + w);
             vec4 row = {0};
             for (int a = -w; a <= w; a++) {
-                const real *T = named(lsm->rows.transform, (uint64_t)particle[a + w], ROW_T);
+                const real *T = named(rows->transform, (uint64_t)particle[a + w], ROW_WIDTH);
                 row += load4(T) - (real)a * load4(T + 12) - (real)b * load4(T + 8) -
                        (real)c * load4(T + 4);
             }
@@ -87,7 +86,7 @@ static void tile_sums(const Lsm *lsm, const Rows *rows, long tile, bool plain, v
     int region[SM_LANES];
     tile_regions(lsm, tile, region);
     for (int lane = 0; lane < SM_LANES; lane++) {
-        made[lane] = region[lane] < 0 ? (Row){0} : region_up(lsm, region[lane]);
+        made[lane] = region[lane] < 0 ? (Row){0} : region_up(lsm, rows, region[lane]);
         row[lane] = (const real *)&made[lane];
     }
     sums_of_rows(row, false, sum);
@@ -102,7 +101,7 @@ static void block_sums(const Lsm *lsm, const Rows *rows, long block, bool plain,
     const int *region = lsm->block_region + block * SM_LANES;
     for (int lane = 0; lane < SM_LANES; lane++) {
         if (region[lane] < 0) continue;
-        vec4 goal = particle_down(lsm, region[lane]);
+        vec4 goal = particle_down(lsm, rows, region[lane]);
         for (int d = 0; d < 3; d++) sum[d][lane] = goal[d];
     }
 }

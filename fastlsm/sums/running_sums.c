@@ -1,40 +1,22 @@
-/* running_sums.c - the sums over running lists (running_lists.h): O(1) a row for any shape.
- *
- * Memory is what takes time here, so little is kept: of a layer m~ x and transforms, of a plane its
- * bars, in scratch of the thread that works on them; plates until the layers around are done with
- * them. A row's sum stays where the rows made from it find it. */
+/* running_sums.c - the sums over running lists (running_lists.h): O(1) a row for any shape. A row's
+ * sum stays where the rows made from it find it. */
 #include <stdlib.h>
-#include <string.h>
 
 #include "../lattice/running_lists.h"
 #include "list_rows.h"
 #include "lists.h"
 
 /* Measured: below it, lists are faster. */
-enum { RUN_LEAST_W = 3, ROW = 16 };
-
-static real none[ROW] __attribute__((aligned(64)));
+enum { RUN_LEAST_W = 3 };
 
 struct LsmRunning {
     LsmRunningLists lists;
     real place[LSM_MAX_SIDE + 1]; /* -w-1 .. w */
-    Rows *rows;                   /* [threads] */
-    int threads;
-    /* a plane's plates, up and down, row 0 first; from plane -w-1 to w behind the last, all of
-     * whose rows are `none` */
-    real **plate[2], *memory[2];
 };
-
-Rows lsm_running_rows(const Lsm *lsm, int layer, int thread)
-{
-    Rows rows = lsm->running->rows[thread];
-    rows.first = lsm->layer_block[layer] * SM_LANES;
-    return rows;
-}
 
 SM_INLINE real *made_at(Level level, int name)
 {
-    return (real *)named(level.out, (uint64_t)name, ROW);
+    return (real *)named(level.out, (uint64_t)name, 4 * level.made);
 }
 
 SM_INLINE vec4 moment_of(Level level, const real *base)
@@ -46,8 +28,8 @@ SM_INLINE void rows_moved(const int *record, long count, int w, Level level)
 {
     for (; count > 0; count--, record += 4) {
         const real *base = made_at(level, record[1]);
-        Sum sum = difference(level, (real)w, member_at(level, 2 * w + 1, (uint64_t)record[2]),
-                             (real)(-w - 1), member_at(level, 0, (uint64_t)record[3]));
+        Sum sum = difference(level, (real)w, member_at(level, (uint64_t)record[2]), (real)(-w - 1),
+                             member_at(level, (uint64_t)record[3]));
         sum.moment -= moment_of(level, base);
         sum_store(sum, level, base, made_at(level, record[0]));
     }
@@ -65,9 +47,8 @@ SM_INLINE void rows_changed(const int *record, long count, int times, const real
             uint32_t at = (uint32_t)record[4];
             for (int i = 0; i < 4; i += 2, at >>= 16) {
                 int enter = at & 255, leave = at >> 8 & 255;
-                Sum change =
-                    difference(level, place[enter], member_at(level, enter, (uint64_t)record[i]),
-                               place[leave], member_at(level, leave, (uint64_t)record[i + 1]));
+                Sum change = difference(level, place[enter], member_at(level, (uint64_t)record[i]),
+                                        place[leave], member_at(level, (uint64_t)record[i + 1]));
                 sum = sum_of(level, sum, change);
             }
         }
@@ -81,7 +62,7 @@ SM_INLINE void rows_listed(const int *record, long count, const real *place, Lev
         int row = *record++, at = *record++;
         Sum sum = {0};
         for (int t = 0; t < times; t++, at++, record++) {
-            Sum own = member_at(level, at, (uint64_t)*record);
+            Sum own = member_at(level, (uint64_t)*record);
             own.moment *= place[at];
             sum = sum_of(level, sum, own);
         }
@@ -111,14 +92,10 @@ SM_INLINE void plane_rows(const Lsm *lsm, const LsmRunningList *list, int z, Lev
 /* Bars and plates of a layer, up (way 0) or down (1). */
 SM_INLINE void subsums(const Lsm *lsm, const Rows *rows, int layer, int way, bool plain)
 {
-    const LsmRunning *running = lsm->running;
-    Level bar = bar_level(rows, way, plain), plate = plate_level(rows, way, plain, true);
-    bar.out = rows->bar;
+    const LsmRunningLists *lists = &lsm->running->lists;
     for (int z = lsm->layer_plane[layer]; z < lsm->layer_plane[layer + 1]; z++) {
-        plate.out = running->plate[way][z + lsm->w + 1];
-        memset(plate.out, 0, ROW * sizeof(real)); /* another layer's rows were there */
-        plane_rows(lsm, &running->lists.bar, z, bar);
-        plane_rows(lsm, &running->lists.plate, z, plate);
+        plane_rows(lsm, &lists->bar, z, bar_level(rows, way, plain));
+        plane_rows(lsm, &lists->plate, z, plate_level(rows, way, plain, true));
     }
 }
 
@@ -141,14 +118,8 @@ static void subsums_down(const Lsm *lsm, const Rows *rows, int layer, bool plain
 /* Regions around the particles of a layer (way 0), or sums over them (1). */
 SM_INLINE void layer_rows(const Lsm *lsm, const Rows *rows, int layer, int way, bool plain)
 {
-    Level level = region_level(way, plain);
-    level.along_z = true;
-    level.in_width = ROW;
-    level.out = rows->transform;
-    for (int z = lsm->layer_plane[layer]; z < lsm->layer_plane[layer + 1]; z++) {
-        level.in = lsm->running->plate[way] + z;
-        plane_rows(lsm, &lsm->running->lists.region, z, level);
-    }
+    for (int z = lsm->layer_plane[layer]; z < lsm->layer_plane[layer + 1]; z++)
+        plane_rows(lsm, &lsm->running->lists.region, z, region_level(rows, way, plain, true));
 }
 
 static void regions(const Lsm *lsm, const Rows *rows, int layer, bool plain)
@@ -172,19 +143,18 @@ static void tile_sums(const Lsm *lsm, const Rows *rows, long tile, bool plain, v
     const int *slot = lsm->tile_slot + tile * SM_LANES;
     const real *row[SM_LANES];
     for (int lane = 0; lane < SM_LANES; lane++)
-        row[lane] =
-            slot[lane] < 0 ? rows->transform : rows->transform + slot_row(rows, slot[lane]) * ROW_T;
+        row[lane] = slot[lane] < 0 ? rows->transform
+                                   : rows->transform + slot_row(rows, slot[lane]) * ROW_WIDTH;
     sums_of_rows(row, plain, sum);
 }
 
 static void block_sums(const Lsm *lsm, const Rows *rows, long block, bool plain, vec sum[6])
 {
     (void)lsm;
-    const real *row = rows->transform + slot_row(rows, block * SM_LANES) * ROW_T;
+    const real *row = narrow(rows->transform, 2) + slot_row(rows, block * SM_LANES) * 8;
     real(*out)[SM_LANES] = (real(*)[SM_LANES])sum;
     for (int lane = 0; lane < SM_LANES; lane++)
-        for (int i = 0; i < (plain ? 6 : 3); i++)
-            out[i][lane] = row[lane * ROW_T + i / 3 * 4 + i % 3];
+        for (int i = 0; i < (plain ? 6 : 3); i++) out[i][lane] = row[lane * 8 + i / 3 * 4 + i % 3];
 }
 
 static const LsmListKernels kernels = {subsums_up, subsums_down, regions,
@@ -204,83 +174,25 @@ static bool applies(const Lsm *lsm)
            lsm->params.strain_limit == 0 && most <= like * least;
 }
 
-/* Scratch of each thread, for the largest layer and the largest plane. */
-static void open_rows(const Lsm *lsm, LsmRunning *running)
-{
-    long slots = 0, bars = 0;
-    for (int l = 0; l < lsm->layers; l++) {
-        long own = (lsm->layer_block[l + 1] - lsm->layer_block[l]) * SM_LANES;
-        slots = own > slots ? own : slots;
-    }
-    for (int z = 0; z < lsm->lists.planes; z++) {
-        long own = lsm->lists.bar_plane[z + 1] - lsm->lists.bar_plane[z];
-        bars = own > bars ? own : bars;
-    }
-    running->threads = lsm->threads;
-    running->rows = sm_alloc((size_t)lsm->threads, sizeof *running->rows);
-    for (int t = 0; t < lsm->threads; t++)
-        running->rows[t] = (Rows){.p = sm_alloc((size_t)(slots + 1) * ROW_P, sizeof(real)),
-                                  .transform = sm_alloc((size_t)(slots + 1) * ROW_T, sizeof(real)),
-                                  .bar = sm_alloc((size_t)(bars + 1) * ROW, sizeof(real))};
-}
-
-/* Memory for plates, up (way 0) or down (1): of a layer's planes one after the other. */
-static void open_plates(const Lsm *lsm, LsmRunning *running, int way)
-{
-    const long *plane = lsm->lists.plate_plane;
-    int planes = lsm->lists.planes, *store = sm_alloc((size_t)lsm->layers, sizeof *store);
-    int stores = lsm_pipeline_stores(lsm, way + 1, store);
-    long most = 0;
-    for (int l = 0; l < lsm->layers; l++) {
-        int first = lsm->layer_plane[l], end = lsm->layer_plane[l + 1];
-        long rows = plane[end] - plane[first] + end - first;
-        most = rows > most ? rows : most;
-    }
-    long all = plane[planes] + planes, turns = stores * most;
-    running->memory[way] = sm_alloc((size_t)(turns < all ? turns : all) * ROW, sizeof(real));
-    real **plate = sm_alloc((size_t)(planes + lsm->side + 1), sizeof *plate);
-    for (int i = 0; i < planes + lsm->side + 1; i++) plate[i] = none;
-    for (int l = 0; l < lsm->layers; l++)
-        for (int z = lsm->layer_plane[l]; z < lsm->layer_plane[l + 1]; z++) {
-            int first = lsm->layer_plane[l];
-            long row = store[l] * most + plane[z] - plane[first] + z - first;
-            if (turns >= all) row = plane[z] - 1 + z; /* each its own: one is far larger */
-            plate[z + lsm->w + 1] = running->memory[way] + row * ROW;
-        }
-    running->plate[way] = plate;
-    free(store);
-}
-
-/* In place of lists and their rows, which go. */
+/* In place of lists. */
 static void open_running(Lsm *lsm)
 {
     LsmRunning *running = lsm->running = sm_alloc(1, sizeof *running);
-    long *first = sm_alloc((size_t)lsm->layers, sizeof *first);
-    for (int l = 0; l < lsm->layers; l++) first[l] = lsm->layer_block[l] * SM_LANES;
     lsm_running_lists_build(&lsm->lattice, lsm->slot, &lsm->lists, lsm->layers, lsm->layer_plane,
-                            first, &running->lists);
-    free(first);
+                            &running->lists);
     for (int i = 0; i <= lsm->side; i++) running->place[i] = (real)(i - lsm->w - 1);
-    open_rows(lsm, running);
-    for (int way = 0; way < 2; way++) open_plates(lsm, running, way);
     int **list[3] = {&lsm->lists.bar, &lsm->lists.plate, &lsm->lists.region};
     for (int i = 0; i < 3; i++) {
         free(*list[i]);
         *list[i] = NULL;
     }
-    const Rows *rows = &lsm->rows;
-    sm_free_all(rows->p, rows->bar, rows->plate, rows->transform, rows->plate_down);
-    lsm->rows = (Rows){.first = 0};
 }
 
 void lsm_running_free(LsmRunning *running)
 {
     if (!running) return;
     lsm_running_lists_free(&running->lists);
-    for (int t = 0; t < running->threads; t++)
-        sm_free_all(running->rows[t].p, running->rows[t].transform, running->rows[t].bar);
-    for (int way = 0; way < 2; way++) sm_free_all(running->plate[way], running->memory[way]);
-    sm_free_all(running->rows, running);
+    free(running);
 }
 
 const LsmSums lsm_sums_running = {

@@ -8,7 +8,7 @@
  *     list_sums.c      through bars and plates, O(w), for any shape
  *     running_sums.c   bars, plates and regions made from their neighbours', O(1), for any shape
  *     boxes.c          windows over all sites of a box, O(1) but for whole blocks along x, for
- *                      solids; box_sum_fixups.c mends the sums of regions that are no boxes
+ *                      solids; regions that are no boxes are summed through their lists
  *     instances.c      through bars and plates of SM_LANES bodies at once that share a lattice
  *
  * Shape matching sums p = m~ x and its moments about the region's own centre, in place of x x0^T
