@@ -48,7 +48,7 @@ typedef struct {
     const BenchKernelKind *kind;
     int set;        /* neighbours of equal `set` share a body, and are timed in turn */
     int side;       /* of the body, if that is a cube (tree_body.h names others) */
-    int w, part;    /* half width of regions; which of the kind's parts */
+    int w, part;    /* half width of regions (0: the scene's); which of the kind's parts */
     double at_most; /* ns an item wanted on one core in single precision, of integers or by AVX-512;
                        0: no limit */
     double avx2_share; /* the share of the floor that is wanted by AVX2; 0: no limit */
@@ -63,6 +63,7 @@ typedef struct {
     const char *base;  /* the kernel that it is compared with, */
     double wanted;     /* how many times its time or, on more threads, its speed */
     const char *paper; /* what the paper says */
+    const char *scene; /* of the body; NULL: named like the kernel */
 } BenchKernel;
 
 /* A kernel that is being timed. */

@@ -29,6 +29,16 @@
     {                                                                                              \
         label, "cases", &bench_scene_kernels, number, .at_most = (ns), .avx2_share = (share)       \
     }
+/* Wide regions: at most so many times the body's own time at w = 1. */
+#define BODY(number, body, width, times, by_name)                                                  \
+    {                                                                                              \
+        body "-w" #width, "bodies", &bench_scene_kernels, number,                                  \
+            .w = width, .large = by_name, .base = body "-w1", .wanted = times,                     \
+            .scene = body "-solid"                                                                 \
+    }
+#define BODIES(number, body)                                                                       \
+    BODY(number, body, 1, 0, false), BODY(number, body, 4, 2, false),                              \
+        BODY(number, body, 10, 3.3, true)
 #define HAND(label, which, ...)                                                                    \
     {                                                                                              \
         "oct-hand-" label, "octree", &bench_tree_step_kernels, 50, .side = BENCH_HAND,             \
@@ -77,6 +87,9 @@ static const BenchKernel kernels[] = {
     SCENE("penguin", 33, 50, 0.13),
     SCENE("penguins", 34, 44, 0),
     SCENE("penguins-free", 35, 20, 0),
+    BODIES(36, "statue"),
+    BODIES(37, "bunny"),
+    BODIES(38, "liver"),
     STEP("scale-1e4", "scaling", 40, 22, 1, .at_most = 0),
     STEP("scale-1e5", "scaling", 40, 46, 1, .base = "scale-1e4", .wanted = 1.25),
     STEP("scale-1e6", "scaling", 40, 100, 1, .base = "scale-1e4", .wanted = 1.25),
@@ -240,7 +253,7 @@ static void compare_samples(const BenchJob *job, const BenchJob *base, BenchKern
 /* Processor time of an item beside that of the base, which has been timed in another set. */
 static void compare_own(const BenchJob *job, double base_ns, BenchKernelRow *row)
 {
-    if (!(base_ns > 0)) return;
+    if (!(base_ns > 0 && job->own_ns > 0 && job->kernel->wanted > 0)) return;
     row->ratio = job->own_ns / base_ns;
     row->own_time = true;
     row->wanted = job->kernel->wanted;

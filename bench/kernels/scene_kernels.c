@@ -24,8 +24,10 @@ static SmCode prepare(BenchJob *job, SmError *error)
                                  .seed = job->params->seed,
                                  .progress = job->params->progress};
     Measured *found = job->subject = sm_alloc(1, sizeof *found);
-    SmCode code = bench_scene_find(job->kernel->name, &scene, error);
+    const BenchKernel *kernel = job->kernel;
+    SmCode code = bench_scene_find(kernel->scene ? kernel->scene : kernel->name, &scene, error);
     if (code) return code;
+    if (kernel->w) scene.params.w = kernel->w;
     scene.params.layout = job->params->layout;
     code = bench_body_of_scene(&scene, NULL, &body, error);
     if (code) return code;
@@ -51,6 +53,7 @@ static void report(BenchJob *job, BenchKernelRow *row)
     row->busy = found->busy;
     if (found->busy) snprintf(row->reason, sizeof row->reason, "%s", found->reason);
     row->ns = found->ns_per_particle_step;
+    job->own_ns = found->busy ? 0 : row->ns;
     row->low = scale * found->total_low_ms;
     row->high = scale * found->total_high_ms;
     job->least = lsm_step_operations(measured->summation, found->w, side, found->damping > 0);
@@ -69,4 +72,4 @@ static void release(void *subject)
 }
 
 const BenchKernelKind bench_scene_kernels = {
-    .prepare = prepare, .report = report, .release = release, .apart = true};
+    .prepare = prepare, .report = report, .release = release, .apart = true, .own = "time"};

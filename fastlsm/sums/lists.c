@@ -86,22 +86,24 @@ static long find_shifts(const Lsm *lsm, const long *plane, bool by_plane, const 
     return most;
 }
 
-/* Where each layer's plates begin. Returns how many places there are. */
+/* Where each layer's plates begin: in turns of room for the largest. Returns how many places there
+ * are. */
 static long turn_plates(const Lsm *lsm, long *places)
 {
     const long *plane = lsm->lists.plate_plane;
+    const int *layer = lsm->layer_plane;
     int *store = sm_alloc((size_t)lsm->layers, sizeof *store);
-    long most = 0, all = lsm->lists.plate_count;
     int stores = lsm_pipeline_stores(lsm, 2, store);
+    long *room = sm_alloc((size_t)stores + 1, sizeof *room);
     for (int l = 0; l < lsm->layers; l++) {
-        long own = plane[lsm->layer_plane[l + 1]] - plane[lsm->layer_plane[l]];
-        most = own > most ? own : most;
+        long own = plane[layer[l + 1]] - plane[layer[l]], *most = &room[store[l] + 1];
+        *most = own > *most ? own : *most;
     }
-    bool turns = stores * most < all; /* or each has its own: one is far larger */
-    for (int l = 0; l < lsm->layers; l++)
-        places[l] = turns ? store[l] * most : plane[lsm->layer_plane[l]] - 1;
-    free(store);
-    return turns ? stores * most : all;
+    for (int i = 0; i < stores; i++) room[i + 1] += room[i];
+    for (int l = 0; l < lsm->layers; l++) places[l] = room[store[l]];
+    long all = room[stores];
+    sm_free_all(store, room);
+    return all;
 }
 
 /* The first slot of each plane's layer, or, of all, 0; [planes + 1]. */
