@@ -104,12 +104,18 @@ void ref_regions_build(const SmVoxels *voxels, int w, const int (*broken)[2], lo
     ref_links_free(&links);
 }
 
-void ref_regions_free(RefRegions *regions)
+static void free_walk(RefRegions *regions)
 {
     for (int t = 0; t < SM_MOST_THREADS && regions->walk; t++)
         sm_free_all(regions->walk[t].seen, regions->walk[t].found);
+    free(regions->walk);
+}
+
+void ref_regions_free(RefRegions *regions)
+{
     if (regions->walk) ref_links_free(&regions->links);
-    sm_free_all(regions->start, regions->member, regions->walk);
+    free_walk(regions);
+    sm_free_all(regions->start, regions->member);
     memset(regions, 0, sizeof *regions);
 }
 
@@ -193,30 +199,52 @@ void ref_region_moments(const RefRegions *regions, const double *weight, const d
     }
 }
 
+static void match_sums(const RefRegions *regions, const double *modified, const double (*x0)[3],
+                       const double (*x)[3], long r, RefMatch *t)
+{
+    ref_region_mean(regions, modified, x0, r, t->c0);
+    t->M = ref_region_mean(regions, modified, x, r, t->c);              /* eq. 9 */
+    ref_region_moments(regions, modified, x, t->c, x0, t->c0, r, t->A); /* eq. 10 */
+}
+
 void ref_match_sums(const RefRegions *regions, const double (*x0)[3], const double *m,
                     const double (*x)[3], RefMatch *match)
 {
     double *modified = modified_masses(regions, m);
 #pragma omp parallel for num_threads(sm_team(0))                                                   \
     schedule(dynamic, 64) if (regions->count > REF_SERIAL)
-    for (long r = 0; r < regions->count; r++) {
-        RefMatch *t = match + r;
-        ref_region_mean(regions, modified, x0, r, t->c0);
-        t->M = ref_region_mean(regions, modified, x, r, t->c);              /* eq. 9 */
-        ref_region_moments(regions, modified, x, t->c, x0, t->c0, r, t->A); /* eq. 10 */
-    }
+    for (long r = 0; r < regions->count; r++) match_sums(regions, modified, x0, x, r, match + r);
     free(modified);
+}
+
+static void match_rotation(RefMatch *match)
+{
+    double R[9];
+    ref_polar(match->A, match->R, R);
+    memcpy(match->R, R, sizeof R);
 }
 
 void ref_match_rotations(const RefRegions *regions, RefMatch *match)
 {
 #pragma omp parallel for num_threads(sm_team(0))                                                   \
     schedule(dynamic, 64) if (regions->count > REF_SERIAL)
-    for (long r = 0; r < regions->count; r++) {
-        double R[9];
-        ref_polar(match[r].A, match[r].R, R);
-        memcpy(match[r].R, R, sizeof R);
+    for (long r = 0; r < regions->count; r++) match_rotation(match + r);
+}
+
+static void match_goal(const RefRegions *regions, const RefMatch *match, const double (*x0)[3],
+                       const double (*x)[3], long i, double g[3])
+{
+    double sum[3] = {0}; /* of T_r x0_i - x_i; the regions that hold i are R_i's members */
+    RefMembers in = ref_members(regions, i);
+    for (long n = 0; n < in.count; n++) {
+        const RefMatch *t = match + in.member[n];
+        for (int a = 0; a < 3; a++) {
+            sum[a] += t->c[a] - x[i][a];
+            for (int b = 0; b < 3; b++) sum[a] += t->R[3 * a + b] * (x0[i][b] - t->c0[b]);
+        }
     }
+    double size = (double)in.count;
+    for (int a = 0; a < 3; a++) g[a] = x[i][a] + sum[a] / size; /* eq. 12 */
 }
 
 void ref_match_goals(const RefRegions *regions, const RefMatch *match, const double (*x0)[3],
@@ -224,19 +252,7 @@ void ref_match_goals(const RefRegions *regions, const RefMatch *match, const dou
 {
 #pragma omp parallel for num_threads(sm_team(0))                                                   \
     schedule(dynamic, 64) if (regions->count > REF_SERIAL)
-    for (long i = 0; i < regions->count; i++) {
-        double sum[3] = {0}; /* of T_r x0_i - x_i; the regions that hold i are R_i's members */
-        RefMembers in = ref_members(regions, i);
-        for (long n = 0; n < in.count; n++) {
-            const RefMatch *t = match + in.member[n];
-            for (int a = 0; a < 3; a++) {
-                sum[a] += t->c[a] - x[i][a];
-                for (int b = 0; b < 3; b++) sum[a] += t->R[3 * a + b] * (x0[i][b] - t->c0[b]);
-            }
-        }
-        double size = (double)in.count;
-        for (int a = 0; a < 3; a++) g[i][a] = x[i][a] + sum[a] / size; /* eq. 12 */
-    }
+    for (long i = 0; i < regions->count; i++) match_goal(regions, match, x0, x, i, g[i]);
 }
 
 void ref_goals(const RefRegions *regions, const double (*x0)[3], const double *m,
@@ -249,6 +265,50 @@ void ref_goals(const RefRegions *regions, const double (*x0)[3], const double *m
     ref_match_rotations(regions, match);
     ref_match_goals(regions, match, x0, x, g);
     free(match);
+}
+
+/* Marks the members of all marked regions. */
+static void mark_members(const RefRegions *regions, const char *of, char *marked)
+{
+#pragma omp parallel for schedule(dynamic, 64) num_threads(sm_team(0))
+    for (long r = 0; r < regions->count; r++) {
+        RefMembers held = of[r] ? ref_members(regions, r) : (RefMembers){0};
+        for (long n = 0; n < held.count; n++) {
+#pragma omp atomic write
+            marked[held.member[n]] = 1;
+        }
+    }
+}
+
+void ref_goals_of(const RefLinks *links, int w, const double (*x0)[3], const double *m,
+                  const double (*x)[3], const long *particle, long count, double (*g)[3])
+{
+    size_t all = (size_t)links->count;
+    RefRegions regions = {.count = links->count, .links = *links, .w = w};
+    regions.walk = sm_alloc(SM_MOST_THREADS, sizeof *regions.walk);
+    RefMatch *match = sm_alloc(all, sizeof *match); /* memory of those that are made alone */
+    double *modified = sm_alloc(all, sizeof *modified);
+    char *asked = sm_alloc(all, 1), *near = sm_alloc(all, 1), *around = sm_alloc(all, 1);
+    for (long i = 0; i < count; i++) asked[particle[i]] = 1;
+    mark_members(&regions, asked, near);
+    mark_members(&regions, near, around);
+#pragma omp parallel num_threads(sm_team(0))
+    {
+#pragma omp for schedule(dynamic, 64)
+        for (long i = 0; i < regions.count; i++)
+            if (around[i]) modified[i] = m[i] / (double)ref_members(&regions, i).count;
+#pragma omp for schedule(dynamic, 64)
+        for (long r = 0; r < regions.count; r++) {
+            if (!near[r]) continue;
+            match[r].R[0] = match[r].R[4] = match[r].R[8] = 1;
+            match_sums(&regions, modified, x0, x, r, &match[r]);
+            match_rotation(&match[r]);
+        }
+    }
+    for (long i = 0; i < count; i++)
+        match_goal(&regions, match, x0, x, particle[i], g[particle[i]]);
+    free_walk(&regions);
+    sm_free_all(match, modified, asked, near, around);
 }
 
 /* J^-1 L. What is all in one point does not turn. */

@@ -84,6 +84,11 @@ void ref_match_goals(const RefRegions *regions, const RefMatch *match, const dou
 void ref_goals(const RefRegions *regions, const double (*x0)[3], const double *m,
                const double (*x)[3], double (*g)[3]);
 
+/* The same of so many particles alone, g[particle[i]]; their regions and these regions' members
+ * are found anew: O(members) of the particles within 2 w. */
+void ref_goals_of(const RefLinks *links, int w, const double (*x0)[3], const double *m,
+                  const double (*x)[3], const long *particle, long count, double (*g)[3]);
+
 /* How an engine sums up for eq. 14: in numbers of a precision, about origins. Where that does not
  * know a region's inertia, the engine damps by the rule of lib/simd/rigid_lanes.h, which says why:
  * with noise = 8 epsilon |c_r - origin_r|^2 and I over M_r, a region is solid if

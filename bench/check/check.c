@@ -20,11 +20,26 @@ double bench_check_members(const BenchBody *body, int w)
     return count * fmin(members, count);
 }
 
+/* The members of the particles in the regions of those around a place of a sample. */
+static double sample_members(const BenchBody *body, int w)
+{
+    double count = (double)body->voxels.particle_count, members = 1, around = 1;
+    for (int d = 0; d < 3; d++) {
+        double size = body->voxels.size[d] + 1;
+        members *= fmin(2.0 * w + 1, size);
+        around *= fmin(4.0 * w + (d ? 1 : BENCH_SAMPLE_RUN), size);
+    }
+    return fmin(around, count) * fmin(members, count);
+}
+
 static double lattice_members(const BenchScene *scene, const BenchBody *body,
                               const SmEngine *engine)
 {
     (void)engine;
-    return bench_check_members(body, scene->params.w);
+    double members = bench_check_members(body, scene->params.w);
+    bool broken = scene->params.strain_limit > 0; /* whose links are of all */
+    return members > BENCH_MOST_MEMBERS && !broken ? sample_members(body, scene->params.w)
+                                                   : members;
 }
 
 static double tree_members(const BenchScene *scene, const BenchBody *body, const SmEngine *engine)
@@ -101,14 +116,39 @@ void bench_check_begin(const BenchScene *scene, const BenchBody *body, const SmE
     bench_engine(type->name)->twin->begin(scene, body, type, engine, check);
 }
 
+/* Places spread over the body: multiples of the golden ratio. */
+void bench_check_sample(const BenchBody *body, int w, BenchCheck *check)
+{
+    const long most = 64, count = body->voxels.particle_count;
+    *check = (BenchCheck){.body = body, .count = count};
+    check->mass = sm_alloc((size_t)count, sizeof *check->mass);
+    long places = (long)(BENCH_MOST_MEMBERS / sample_members(body, w));
+    places = places < 1 ? 1 : places > most ? most : places;
+    check->w = w;
+    check->sample = sm_alloc((size_t)places * BENCH_SAMPLE_RUN, sizeof *check->sample);
+    for (long i = 0; i < places; i++)
+        for (int k = 0; k < BENCH_SAMPLE_RUN; k++) {
+            double at = fmod(0.5 + (double)i * 0.6180339887498949, 1);
+            long p = (long)(at * (double)check->count) + k;
+            check->sample[check->samples++] = p % check->count;
+        }
+    ref_links_build(&body->voxels, NULL, 0, &check->links);
+    for (long p = 0; p < check->count; p++) check->mass[p] = body->mass ? body->mass[p] : 1;
+}
+
 void bench_check_create(const BenchBody *body, int w, long parted, int (*pair)[2],
                         BenchCheck *check)
 {
     long count = body->voxels.particle_count;
+    if (!parted && bench_check_members(body, w) > BENCH_MOST_MEMBERS) {
+        free(pair);
+        bench_check_sample(body, w, check);
+        return;
+    }
     *check = (BenchCheck){.body = body, .count = count, .parted = parted, .pair = pair};
+    check->mass = sm_alloc((size_t)count, sizeof *check->mass);
     ref_regions_build(&body->voxels, w, (const int(*)[2])pair, parted, &check->regions);
     check->unique = ref_regions_unique(&check->regions);
-    check->mass = sm_alloc((size_t)count, sizeof *check->mass);
     check->weight = sm_alloc((size_t)count, sizeof *check->weight);
     check->rest = sm_alloc((size_t)count, sizeof *check->rest);
     for (long p = 0; p < count; p++) {
@@ -125,7 +165,8 @@ void bench_check_free(BenchCheck *check)
         ref_tree_free(&check->octree);
     else
         ref_regions_free(&check->regions);
-    sm_free_all(check->mass, check->weight, check->rest, check->pair);
+    if (check->samples) ref_links_free(&check->links);
+    sm_free_all(check->mass, check->weight, check->rest, check->pair, check->sample);
     *check = (BenchCheck){0};
 }
 
@@ -138,10 +179,13 @@ static bool all_finite(const double (*value)[3], long count)
 
 /* Adds the largest distance of two goals, in cells; apart, that of those that are `tied` and not
  * alike all the same. */
-static void find_goal_error(const double (*g)[3], const double (*exact)[3], const bool *tied,
-                            long count, double cell, BenchDeviation *found)
+static void find_goal_error(const BenchCheck *check, const double (*g)[3], const double (*exact)[3],
+                            const bool *tied, BenchDeviation *found)
 {
-    for (long p = 0; p < count; p++) {
+    double cell = check->body->voxels.cell;
+    long count = check->samples ? check->samples : check->count;
+    for (long i = 0; i < count; i++) {
+        long p = check->samples ? check->sample[i] : i;
         double square = 0;
         for (int d = 0; d < 3; d++) square += (g[p][d] - exact[p][d]) * (g[p][d] - exact[p][d]);
         double error = sqrt(square) / cell;
@@ -199,6 +243,9 @@ static void exact_goals(const BenchCheck *check, const double (*x)[3], double (*
 {
     if (check->hierarchical)
         twin_goals(check, x, check->octree.yield, false, S, R, exact);
+    else if (check->samples)
+        ref_goals_of(&check->links, check->w, (const double(*)[3])check->body->x0, check->mass, x,
+                     check->sample, check->samples, exact);
     else
         ref_goals(&check->regions, (const double(*)[3])check->body->x0, check->mass, x, exact);
 }
@@ -283,6 +330,7 @@ BenchDeviation bench_check_state(const BenchCheck *check, const SmEngineType *ty
     type->get(engine, SM_VELOCITY, v);
     type->get(engine, SM_GOAL, g);
     BenchDeviation result = {.particles = all,
+                             .sampled = check->samples * check->body->instances,
                              .parted_wrong = check->parted_wrong,
                              .goal_tolerance = bench_check_tolerance(type->precision),
                              .plain = check->plain,
@@ -294,9 +342,8 @@ BenchDeviation bench_check_state(const BenchCheck *check, const SmEngineType *ty
         const double(*at)[3] = (const double(*)[3])(x + first);
         const double(*goal)[3] = (const double(*)[3])(g + first);
         exact_goals(check, at, S ? S + first : NULL, R, exact);
-        bench_check_tied(check, type->precision, at, tied);
-        find_goal_error(goal, (const double(*)[3])exact, tied, count, check->body->voxels.cell,
-                        &result);
+        if (!check->samples) bench_check_tied(check, type->precision, at, tied);
+        find_goal_error(check, goal, (const double(*)[3])exact, tied, &result);
         double drift = bench_check_momentum(at, goal, check->mass, count);
         result.momentum_error = fmax(result.momentum_error, drift);
     }
@@ -420,6 +467,7 @@ void bench_check_merge(const BenchDeviation *found, BenchDeviation *worst)
     worst->plain = found->plain;
     worst->particles = found->particles;
     if (found->tied > worst->tied) worst->tied = found->tied;
+    worst->sampled = found->sampled;
     if (found->unresolved > worst->unresolved) worst->unresolved = found->unresolved;
     worst->tied_error = fmax(worst->tied_error, found->tied_error);
     worst->unresolved_error = fmax(worst->unresolved_error, found->unresolved_error);
@@ -447,6 +495,11 @@ void bench_check_text(const BenchDeviation *found, size_t size, char *text)
              found->goal_error, found->goal_tolerance,
              found->plain ? "not kept by plain weighting, off by" : "kept to",
              found->momentum_error);
+    if (found->sampled)
+        sm_append(text, size,
+                  ", goals of %ld of %ld particles (%.2g%%) compared, damping and contacts of none",
+                  found->sampled, found->particles,
+                  100 * (double)found->sampled / (double)found->particles);
     if (found->drift.steps > 0)
         sm_append(text, size,
                   ", over %ld free steps it drifts by %.1g cells and %.1g radians a step",

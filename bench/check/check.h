@@ -20,9 +20,12 @@ typedef struct {
     bool hierarchical;     /* an octree's */
     bool plain;            /* its weighting: momentum is measured, but need not be kept */
     RefRegions regions;    /* of a lattice, */
-    long parted;           /* and of its links those that are broken, */
-    int (*pair)[2];        /* [parted]; */
-    long parted_wrong;     /* of these and those that were cut, what is only one of both */
+    long *sample, samples; /* or goals of so many particles alone are compared, */
+    int w;                 /* whose regions these links make; 0: of all */
+    RefLinks links;
+    long parted;       /* and of its links those that are broken, */
+    int (*pair)[2];    /* [parted]; */
+    long parted_wrong; /* of these and those that were cut, what is only one of both */
     RefTreeBody octree;
 } BenchCheck;
 
@@ -44,6 +47,7 @@ typedef struct {
     double
         goal_error; /* largest |g - brute force| over particles, in cells; infinite if not finite */
     double goal_tolerance; /* what is allowed */
+    long sampled; /* particles whose goals were compared, without damping and contacts; 0: all */
     double momentum_error; /* |sum m g - sum m x| / sum m |x - centroid|, largest of all instances;
                             * with plain weighting, too */
     bool plain;            /* weighting, with which it need not be kept */
@@ -70,9 +74,12 @@ typedef struct {
 } BenchDeviation;
 
 /* Members of all regions of this body, at most: a window's, cut to the body's box. A check walks
- * through them some ten times, at thirty nanoseconds each: beyond BENCH_MOST_MEMBERS nothing is
- * checked. */
+ * through them some ten times, at thirty nanoseconds each. Beyond BENCH_MOST_MEMBERS goals are
+ * checked of a sample of particles alone: of BENCH_SAMPLE_RUN that follow each other at as many
+ * places as take that long, at least one. */
 #define BENCH_MOST_MEMBERS 2e9
+#define BENCH_MOST_SAMPLED 4e9
+enum { BENCH_SAMPLE_RUN = 16 };
 double bench_check_members(const BenchBody *body, int w);
 
 /* What an engine's goals are held to: all particles' regions by the scene's w in cells, or a
@@ -86,7 +93,8 @@ typedef struct BenchTwin {
 
 extern const BenchTwin bench_lattice_twin, bench_octree_twin;
 
-/* The members of the engine's twin; INFINITY of an engine that has none. */
+/* The members that a check walks through; INFINITY of an engine that has no twin. Beyond
+ * BENCH_MOST_SAMPLED nothing is checked. */
 double bench_twin_members(const BenchRunner *runner);
 
 /* Builds the reference's regions for a lattice engine, of whose links these pairs are parted
@@ -94,6 +102,9 @@ double bench_twin_members(const BenchRunner *runner);
  * members. */
 void bench_check_create(const BenchBody *body, int w, long parted, int (*pair)[2],
                         BenchCheck *check);
+
+/* The same, but of a sample of particles, whatever it would take to check all. */
+void bench_check_sample(const BenchBody *body, int w, BenchCheck *check);
 
 /* For any engine on the scene's body that has a twin. */
 void bench_check_begin(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,

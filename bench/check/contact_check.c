@@ -229,7 +229,8 @@ void bench_check_contacts(const BenchCheck *check, const BenchScene *scene,
 {
     const SmCollideParams *collide = &scene->params.collide;
     Contacts c;
-    if (!found->finite || !(collide->self || (collide->bodies && check->body->instances > 1)))
+    if (!found->finite || check->samples ||
+        !(collide->self || (collide->bodies && check->body->instances > 1)))
         return;
     type->goals(engine);
     begin(check, scene, type, engine, &c);

@@ -76,7 +76,7 @@ static bool held_to_brute(const BenchRunner *runner, double *motion, size_t size
     bench_check_begin(runner->scene, runner->body, runner->type, runner->engine, &check);
     bool right = bench_check_all(&check, runner, &found, size, reason);
     bench_check_free(&check);
-    if (runner->scene->params.damping > 0) *motion = found.motion_error;
+    if (runner->scene->params.damping > 0 && !found.sampled) *motion = found.motion_error;
     return right;
 }
 
@@ -110,7 +110,7 @@ bool bench_check_runner(const BenchRunner *runner, size_t size, char *reason)
     }
     double members = bench_twin_members(runner);
     bool plain = runner->scene->octree.weighting == OCT_PLAIN;
-    if (members <= BENCH_MOST_MEMBERS) {
+    if (members <= BENCH_MOST_SAMPLED) {
         if (!held_to_brute(runner, &motion, size, reason)) return false;
     } else if (!plain && !bench_check_keeps(drift(runner), size, reason)) {
         return false;

@@ -684,6 +684,45 @@ TEST(what_rounding_leaves_of_an_inertia)
     }
 }
 
+/* Twice what goals may be off, one way here and the other there, so that momentum is kept. */
+static long pushed;
+
+static void push_goals(SmEngine *engine, SmField what, double (*out)[3])
+{
+    honest->get(engine, what, out);
+    if (what != SM_GOAL) return;
+    out[pushed][1] += 2e-4 * 0.3;
+    out[0][1] -= 2e-4 * 0.3;
+}
+
+TEST(a_sample_is_held_to_brute_force)
+{
+    for (int t = 0; t < 2; t++) {
+        Plate plate;
+        BenchCheck check;
+        char text[512], reason[160];
+        strip_create(types[t], 200, WIDE, 0.1, false, &plate);
+        place(&plate, false, false);
+        bench_check_sample(&plate.body, 1, &check);
+        assert_true(check.samples >= 8 * BENCH_SAMPLE_RUN && check.samples < plate.count);
+        BenchDeviation found = bench_check_find(&check, &(BenchRunner){.scene = &plate.scene,
+                                                                       .body = &plate.body,
+                                                                       .type = plate.type,
+                                                                       .engine = plate.engine});
+        assert_true(bench_check_verdict(&found, sizeof reason, reason));
+        assert_true(found.goal_error > 0 && found.goal_error <= check_plate(&plate).goal_error);
+        bench_check_text(&found, sizeof text, text);
+        assert_non_null(strstr(text, "goals of 1024 of 2814 particles (36%) compared"));
+        wrong_type(&plate)->get = push_goals;
+        pushed = check.sample[5];
+        found = bench_check_state(&check, plate.type, plate.engine);
+        assert_false(bench_check_verdict(&found, sizeof reason, reason));
+        bench_check_free(&check);
+        plate.type = honest;
+        plate_free(&plate);
+    }
+}
+
 TEST(momentum_is_relative_to_the_spread)
 {
     const double x[2][3] = {{-1}, {3}}, g[2][3] = {{-1}, {3 + 4e-6}}, m[] = {3, 1};

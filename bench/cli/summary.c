@@ -25,7 +25,7 @@ static bool print_deviation(const BenchRunner *runner)
         printf("deviation: not checked: the bodies have broken, each in its own way\n");
         return true;
     }
-    if (bench_twin_members(runner) > BENCH_MOST_MEMBERS) {
+    if (bench_twin_members(runner) > BENCH_MOST_SAMPLED) {
         printf("deviation: not checked: brute force would take too long\n");
         return true;
     }

@@ -51,7 +51,7 @@ static int set_up(void **state)
                       8 * box + face[f][1], 8 * box + face[f][2], 8 * box + face[f][3]);
     }
     write_text("two.obj", two);
-    write_text("wide.cfg", "mesh = \"shape:block\"; particles = 46656; w = 31;\n");
+    write_text("wide.cfg", "mesh = \"shape:block\"; particles = 70000; w = 31;\n");
     write_text("tree.cfg",
                "paper = \"octree\"; row = \"hand-sampled\"; mesh = \"shape:block\"; cells = 343;\n"
                "engine = \"octree\"; bend = 0.3; kick = 0.01; epsilon = 0.5;\n"
@@ -189,7 +189,7 @@ TEST(mistakes_of_other_commands_are_too)
         {"scenes penguin --write-mesh /no/such/a.obj", 4, "/no/such/a.obj"},
         {"scenes penguin --write-mesh /dev/null", 4, "it is there and not a regular file"},
         {"scenes penguin --write-mesh /tmp", 4, "it is there and not a regular file"},
-        {"tables --scene wide.cfg", 3, "wide.cfg: regions with 2.18e+09 members take too long"},
+        {"tables --scene wide.cfg", 3, "wide.cfg: regions with 4.98e+09 members take too long"},
         {"tables --repeats 0", 2, "--repeats: '0'"},
         {"info shape:block --slice z=0.5 -o a.h5 --particles 9", 2, "without --format and --part"},
         {"tables --paper unknown", 2, "'unknown' is not one of fastlsm, octree, meshless"},

@@ -51,6 +51,8 @@ static void brief_row(FILE *file, const BenchRow *row, int width)
     else
         fprintf(file, "goals %.1e, drift %.0e%s", row->goal_error, row->drift,
                 row->plain ? " plain" : "");
+    if (row->sampled)
+        fprintf(file, ", of %ld of %ld particles alone", row->sampled, row->particles);
     if (row->left_out) fprintf(file, ", %ld left out", row->left_out);
     print_lost(file, row, "; ");
     if (row->busy) {
