@@ -20,7 +20,7 @@ static struct {
 
 const char *ref_status_name(RefStatus status)
 {
-    static const char *const names[] = {"quoted", "derived", "damaged", "second-hand"};
+    static const char *const names[] = {"quoted", "derived", "ours", "damaged", "second-hand"};
     return names[status];
 }
 
@@ -36,7 +36,8 @@ static RefStatus status_of(const config_setting_t *pair)
     const char *name = config_setting_get_string_elem(pair, 1);
     for (RefStatus s = REF_QUOTED; name && s <= REF_SECOND_HAND; s++)
         if (strcmp(name, ref_status_name(s)) == 0) return s;
-    fault("a status is quoted, derived, damaged or second-hand", config_setting_source_line(pair));
+    fault("a status is quoted, derived, ours, damaged or second-hand",
+          config_setting_source_line(pair));
     return REF_DAMAGED;
 }
 

@@ -6,11 +6,12 @@
 
 #include "../lib/engine/stage.h"
 
-typedef enum { REF_QUOTED, REF_DERIVED, REF_DAMAGED, REF_SECOND_HAND } RefStatus;
+typedef enum { REF_QUOTED, REF_DERIVED, REF_OURS, REF_DAMAGED, REF_SECOND_HAND } RefStatus;
 
 typedef struct {
     double value;     /* NaN: not given */
-    RefStatus status; /* printed; computed from printed; damaged or misprinted; from elsewhere */
+    RefStatus status; /* printed; computed from printed; this project's, for the paper's words;
+                       * damaged or misprinted; from elsewhere */
 } RefValue;
 
 /* A row of a paper's table. */
@@ -61,7 +62,7 @@ int ref_paper_column(const RefPaperRow *row, const char *column, RefValue value[
  * derived one is as sound as that. */
 RefStatus ref_paper_step_status(const RefPaperRow *row);
 
-/* "quoted", "derived", "damaged", "second-hand". */
+/* "quoted", "derived", "ours", "damaged", "second-hand". */
 const char *ref_status_name(RefStatus status);
 
 #endif

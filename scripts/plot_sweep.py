@@ -29,6 +29,15 @@ def unit_of_w(plan):
     return "w, edges of each node's cell" if plan["width"] == "edges" else "w, finest cells"
 
 
+def plain_ticks(axis):
+    """Of a logarithmic axis: 0.5, 1, 2 in place of powers of ten."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())
+
+
 def heat_map(axes, plan, point, values, title, logarithmic):
     tree = point["sampled"]
     ws, epsilons = numpy.unique(point["w"]), numpy.unique(point["epsilon"][tree])
@@ -43,7 +52,9 @@ def heat_map(axes, plan, point, values, title, logarithmic):
 
         norm = LogNorm(known.min(), max(known.max(), 1.001 * known.min())) if logarithmic else None
         image = axes.imshow(cells, origin="lower", aspect="auto", cmap="viridis", norm=norm)
-        axes.figure.colorbar(image, ax=axes, pad=0.02)
+        bar = axes.figure.colorbar(image, ax=axes, pad=0.02)
+        if logarithmic:
+            plain_ticks(bar.ax.yaxis)
         size = min(9, 24 * axes.bbox.width / axes.figure.dpi / cells.shape[1])  # three fit in a cell
         for (row, column), value in numpy.ndenumerate(cells):
             if cells.size <= 200 and numpy.isfinite(value):
@@ -86,6 +97,8 @@ def front(axes, point):
         axes.annotate(f"{w:g}", (stiff[i], cost[i]), (0, 5), textcoords="offset points", ha="center", fontsize=8)
     axes.set_xscale("log")
     axes.set_yscale("log")
+    plain_ticks(axes.xaxis)
+    plain_ticks(axes.yaxis)
     axes.margins(y=0.1)
     axes.legend()
     axes.figure.colorbar(dots, ax=axes, pad=0.02, label="path off, percent of the body's size")

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "../table/grid.h"
+#include "../table/quantity.h"
 #include "../table/row_store.h"
 #include "fit.h"
 
@@ -51,11 +52,10 @@ static const char *status_of_values(const void *record)
 
 static void paper_cell(const void *record, char *text)
 {
-    static const char *const marks[] = {"", "", "?", "*"};
     const BenchClaim *claim = &((const BenchFinding *)record)->claim;
     char paper[64];
     bench_verdict_paper(claim, sizeof paper, paper);
-    snprintf(text, BENCH_GRID_TEXT, "%s%s", paper, marks[claim->status]);
+    snprintf(text, BENCH_GRID_TEXT, "%s%s", paper, bench_quantity_mark(claim->status));
 }
 
 static void measured_cell(const void *record, char *text)
@@ -95,7 +95,7 @@ const BenchField bench_claim_fields[] = {
     {.name = "status",
      .kind = BENCH_TEXT,
      .text = status_text,
-     MEANS(NULL, "of them: quoted, derived, damaged or second-hand")},
+     MEANS(NULL, "of them: quoted, derived, ours (for the paper's words), damaged or second-hand")},
     {.column = "status", .kind = BENCH_TEXT, .text = status_of_values},
     {FIELD(DOUBLE, "measured", value), MEANS(NULL, "values, NaN beyond `count`"),
      .listed = measured_values},

@@ -20,19 +20,25 @@ static const char *const titles[BENCH_CLAIM_KINDS] = {
     "where it does not.",
 };
 
-/* "18 method: 9 reproduced, 9 differs; 2 machine: 2 measured". */
+/* "18 method: 9 reproduced (2 by numbers of ours), 9 differs; 2 machine: 2 measured". */
 static void tally(const BenchFinding *findings, int count, size_t size, char *text)
 {
     text[0] = '\0';
     for (int k = 0; k < BENCH_CLAIM_KINDS; k++) {
-        int number[BENCH_VERDICTS] = {0}, all = 0;
-        for (int f = 0; f < count; f++)
-            if (findings[f].claim.kind == (BenchClaimKind)k) number[findings[f].verdict]++, all++;
+        int number[BENCH_VERDICTS] = {0}, ours[BENCH_VERDICTS] = {0}, all = 0;
+        for (int f = 0; f < count; f++) {
+            if (findings[f].claim.kind != (BenchClaimKind)k) continue;
+            number[findings[f].verdict]++;
+            ours[findings[f].verdict] += findings[f].claim.status == REF_OURS;
+            all++;
+        }
         if (all) sm_append(text, size, "%s%d %s", *text ? "; " : "", all, bench_claim_kinds[k]);
-        for (int v = 0, said = 0; v < BENCH_VERDICTS; v++)
-            if (number[v])
-                sm_append(text, size, "%s %d %s", said++ ? "," : ":", number[v],
-                          bench_verdict_names[v]);
+        for (int v = 0, said = 0; v < BENCH_VERDICTS; v++) {
+            if (!number[v]) continue;
+            sm_append(text, size, "%s %d %s", said++ ? "," : ":", number[v],
+                      bench_verdict_names[v]);
+            if (ours[v]) sm_append(text, size, " (%d by numbers of ours)", ours[v]);
+        }
     }
 }
 
@@ -92,7 +98,9 @@ static void write_people(FILE *file, BenchFormat format, const BenchFinding *fin
         "Of %d, %s. Brackets hold 95%% confidence intervals, of several values half of the widest "
         "one. Undecided: the value does not pass the test, but a part of its interval does. ? "
         "marks "
-        "a value that the paper misprints, * one that we know from another source than the paper."
+        "a value that the paper misprints, * one that we know from another source than the paper, "
+        "~ "
+        "one that is ours: the paper says it in words."
         "\n\n",
         count, text);
     write_notes(file, findings, count, format == BENCH_AS_MARKDOWN);

@@ -60,7 +60,7 @@ static const char help[] =
     "Everything is measured once, and checked: against brute force; the largest cubes for finite "
     "goals and linear momentum. With FILE.h5 alone: show stored claims.\v"
     "The claims are data, in reference/claims.cfg; its head says how to write your own for "
-    "--claims. Takes about five minutes of one core's time, less with --quick.\n" BENCH_EXIT_CODES
+    "--claims. Takes a quarter of an hour of one core's time, less with --quick.\n" BENCH_EXIT_CODES
     " Of claims also: 1 what should be reproduced is not, or what is set is not so; 3 a claims "
     "file cannot be used.";
 

@@ -59,6 +59,33 @@ static void add_instructions(char *words, size_t size, char *text)
             }
 }
 
+/* Clouds name a processor "AMD EPYC" or "Intel Xeon Processor", whatever it is. */
+static void add_generation(const char *vendor, int family, int model, size_t size, char *cpu)
+{
+    static const struct {
+        const char *vendor;
+        int family, from, to; /* models */
+        const char *name;
+    } known[] = {{"AuthenticAMD", 23, 0x00, 0x2f, "Zen"},
+                 {"AuthenticAMD", 23, 0x30, 0xff, "Zen 2"},
+                 {"AuthenticAMD", 25, 0x10, 0x1f, "Zen 4"},
+                 {"AuthenticAMD", 25, 0x60, 0xaf, "Zen 4"},
+                 {"AuthenticAMD", 25, 0x00, 0x5f, "Zen 3"},
+                 {"AuthenticAMD", 26, 0x00, 0x4f, "Zen 5"},
+                 {"AuthenticAMD", 26, 0x60, 0x7f, "Zen 5"},
+                 {"GenuineIntel", 6, 0x55, 0x55, "Skylake or Cascade Lake"},
+                 {"GenuineIntel", 6, 0x6a, 0x6c, "Ice Lake"},
+                 {"GenuineIntel", 6, 0x8f, 0x8f, "Sapphire Rapids"},
+                 {"GenuineIntel", 6, 0xcf, 0xcf, "Emerald Rapids"},
+                 {"GenuineIntel", 6, 0xad, 0xad, "Granite Rapids"}};
+    for (size_t k = 0; k < sizeof known / sizeof *known; k++)
+        if (!strcmp(vendor, known[k].vendor) && family == known[k].family &&
+            model >= known[k].from && model <= known[k].to) {
+            sm_append(cpu, size, ", %s", known[k].name);
+            return;
+        }
+}
+
 /* Of /proc/cpuinfo's first processor, on x86 and on ARM. */
 static void read_cpu(BenchMachine *machine)
 {
@@ -68,7 +95,8 @@ static void read_cpu(BenchMachine *machine)
         {"vendor_id", NULL},      {"cpu family", "family"},           {"model\t", "model"},
         {"stepping", "stepping"}, {"CPU implementer", "implementer"}, {"CPU variant", "variant"},
         {"CPU part", "part"},     {"CPU revision", "revision"}};
-    char line[8192], *model = machine->cpu_model;
+    char line[8192], *model = machine->cpu_model, vendor[16] = "";
+    int family = 0, number = 0;
     FILE *file = fopen("/proc/cpuinfo", "re");
     while (file && fgets(line, sizeof line, file) && line[0] != '\n') {
         char *value = strchr(line, ':');
@@ -77,6 +105,9 @@ static void read_cpu(BenchMachine *machine)
         value[strcspn(value, "\n")] = '\0';
         if (!strncmp(line, "model name", 10))
             snprintf(machine->cpu, sizeof machine->cpu, "%.127s", value);
+        if (!strncmp(line, "vendor_id", 9)) snprintf(vendor, sizeof vendor, "%s", value);
+        if (!strncmp(line, "cpu family", 10)) family = atoi(value);
+        if (!strncmp(line, "model\t", 6)) number = atoi(value);
         if (!strncmp(line, "flags", 5) || !strncmp(line, "Features", 8))
             add_instructions(value, sizeof machine->cpu_instructions, machine->cpu_instructions);
         for (size_t p = 0; p < sizeof parts / sizeof *parts; p++)
@@ -85,6 +116,7 @@ static void read_cpu(BenchMachine *machine)
                           parts[p].word ? parts[p].word : "", parts[p].word ? " " : "", value);
     }
     if (file) fclose(file);
+    add_generation(vendor, family, number, sizeof machine->cpu, machine->cpu);
     char *texts[] = {machine->cpu, machine->cpu_model, machine->cpu_instructions};
     for (int t = 0; t < 3; t++)
         if (!texts[t][0]) strcpy(texts[t], "unknown");

@@ -125,7 +125,8 @@ static void triangles_cell(const void *record, char *text)
 
 const char *bench_quantity_mark(RefStatus status)
 {
-    return status == REF_DAMAGED ? "?" : status == REF_SECOND_HAND ? "*" : "";
+    static const char *const marks[] = {"", "", "~", "?", "*"};
+    return marks[status];
 }
 
 BELOW(name_below)

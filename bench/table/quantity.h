@@ -48,8 +48,8 @@ const double *bench_quantity_stage(const BenchQuantity *quantity, const BenchRow
  * its alias. NULL: there is none. */
 const BenchField *bench_quantity_number(const char *name);
 
-/* What stands behind the paper's value: "?" if it is damaged or misprinted, "*" from another
- * source. */
+/* What stands behind the paper's value: "~" if it is ours, "?" damaged or misprinted, "*"
+ * from another source. */
 const char *bench_quantity_mark(RefStatus status);
 
 /* The Markdown table of all that are stored or columns, as results/README.md has it. */

@@ -672,7 +672,7 @@ static void solve(Lsm *lsm, int plane, int thread, SmLaps *laps)
     static LsmPhase *const by_width[2][WIDTHS] = {SOLVE(solve_moments), SOLVE(solve_plain)};
     by_width[lsm->pass->plain][lsm->w < WIDTHS ? lsm->w : 0](lsm, plane, thread, laps);
     Rows rows = lsm_rows_of(lsm, plane, thread);
-    lsm_list_kernels.subsums_down(lsm, &rows, plane, lsm->pass->plain);
+    lsm_list_kernels.subsums(lsm, &rows, plane, 1, lsm->pass->plain);
     sm_lap(laps, lsm->pass->stage);
 }
 

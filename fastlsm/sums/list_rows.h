@@ -30,6 +30,19 @@
         }                                                                                          \
     } while (0)
 
+/* Calls kernel(..., way, plain), one body in which both are constants. */
+#define FOR_PASS(way, plain, kernel, ...)                                                          \
+    do {                                                                                           \
+        if ((way) && (plain))                                                                      \
+            kernel(__VA_ARGS__, 1, true);                                                          \
+        else if (way)                                                                              \
+            kernel(__VA_ARGS__, 1, false);                                                         \
+        else if (plain)                                                                            \
+            kernel(__VA_ARGS__, 0, true);                                                          \
+        else                                                                                       \
+            kernel(__VA_ARGS__, 0, false);                                                         \
+    } while (0)
+
 /* The row of this name among `rows`, which are `width` values wide. */
 SM_INLINE const real *named(const real *rows, uint64_t name, int width)
 {

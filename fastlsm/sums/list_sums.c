@@ -39,20 +39,14 @@ SM_INLINE void subsums_of(const Lsm *lsm, const Rows *rows, int layer, int way, 
               lists->plate_shift[first], plate_level(rows, way, plain, false), side);
 }
 
-static void subsums_up(const Lsm *lsm, const Rows *rows, int layer, bool plain)
+SM_INLINE void subsums_pass(const Lsm *lsm, const Rows *rows, int layer, int way, bool plain)
 {
-    if (plain)
-        FOR_SIDE(lsm->side, subsums_of, lsm, rows, layer, 0, true);
-    else
-        FOR_SIDE(lsm->side, subsums_of, lsm, rows, layer, 0, false);
+    FOR_SIDE(lsm->side, subsums_of, lsm, rows, layer, way, plain);
 }
 
-static void subsums_down(const Lsm *lsm, const Rows *rows, int layer, bool plain)
+static void subsums(const Lsm *lsm, const Rows *rows, int layer, int way, bool plain)
 {
-    if (plain)
-        FOR_SIDE(lsm->side, subsums_of, lsm, rows, layer, 1, true);
-    else
-        FOR_SIDE(lsm->side, subsums_of, lsm, rows, layer, 1, false);
+    FOR_PASS(way, plain, subsums_pass, lsm, rows, layer);
 }
 
 SM_INLINE void regions_of(const Lsm *lsm, const Rows *rows, const int *region, bool plain, Row *out,
@@ -111,7 +105,7 @@ static void block_sums(const Lsm *lsm, const Rows *rows, long block, bool plain,
 }
 
 const LsmListKernels lsm_list_kernels = {
-    .subsums_up = subsums_up, .subsums_down = subsums_down, .tile = tile_sums, .block = block_sums};
+    .subsums = subsums, .tile = tile_sums, .block = block_sums};
 
 static bool applies(const Lsm *lsm)
 {

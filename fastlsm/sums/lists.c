@@ -193,7 +193,7 @@ void lsm_lists_subsums(Lsm *lsm, int layer, int thread, SmLaps *laps)
         else
             weigh(lsm, &rows, block);
     }
-    lsm->sums->lists->subsums_up(lsm, &rows, layer, plain);
+    lsm->sums->lists->subsums(lsm, &rows, layer, 0, plain);
     sm_lap(laps, lsm->pass->stage);
 }
 
@@ -264,7 +264,7 @@ void lsm_lists_solve(Lsm *lsm, int layer, int thread, SmLaps *laps)
     const LsmPass *pass = lsm->pass;
     vec sum[POLAR_TILES][12];
     real down[POLAR_TILES * TILE_DOWN] __attribute__((aligned(64)));
-    if (lists->regions) lists->regions(lsm, &rows, layer, pass->plain);
+    if (lists->last) lists->last(lsm, &rows, layer, 0, pass->plain);
     long tile = lsm->layer_tile[layer], end = lsm->layer_tile[layer + 1];
     for (; tile < end; tile += POLAR_TILES) {
         int tiles = end - tile < POLAR_TILES ? (int)(end - tile) : POLAR_TILES;
@@ -276,7 +276,7 @@ void lsm_lists_solve(Lsm *lsm, int layer, int thread, SmLaps *laps)
     }
     copy_regions(lsm, &rows, layer, pass->plain);
     lsm_solved(pass->plain, laps);
-    lists->subsums_down(lsm, &rows, layer, pass->plain);
+    lists->subsums(lsm, &rows, layer, 1, pass->plain);
     sm_lap(laps, pass->stage);
 }
 
@@ -285,7 +285,7 @@ void lsm_lists_end(Lsm *lsm, int layer, int thread, SmLaps *laps)
     Rows rows = lsm_rows_of(lsm, layer, thread);
     const LsmListKernels *lists = lsm->sums->lists;
     const LsmPass *pass = lsm->pass;
-    if (lists->particles) lists->particles(lsm, &rows, layer, pass->plain);
+    if (lists->last) lists->last(lsm, &rows, layer, 1, pass->plain);
     for (long block = lsm->layer_block[layer]; block < lsm->layer_block[layer + 1]; block++) {
         vec sum[1][6] = {{{0}}};
         lists->block(lsm, &rows, block, pass->plain, sum[0]);

@@ -65,14 +65,9 @@ static bool applies(const Lsm *lsm)
     return lsm->params.summation == SM_SUM_NAIVE;
 }
 
-static void subsums_up(const Lsm *lsm, const Rows *rows, int layer, bool plain)
+static void subsums(const Lsm *lsm, const Rows *rows, int layer, int way, bool plain)
 {
-    if (plain) lsm_list_kernels.subsums_up(lsm, rows, layer, plain);
-}
-
-static void subsums_down(const Lsm *lsm, const Rows *rows, int layer, bool plain)
-{
-    if (plain) lsm_list_kernels.subsums_down(lsm, rows, layer, plain);
+    if (plain) lsm_list_kernels.subsums(lsm, rows, layer, way, plain);
 }
 
 static void tile_sums(const Lsm *lsm, const Rows *rows, long tile, bool plain, vec sum[12])
@@ -106,8 +101,7 @@ static void block_sums(const Lsm *lsm, const Rows *rows, long block, bool plain,
     }
 }
 
-static const LsmListKernels kernels = {
-    .subsums_up = subsums_up, .subsums_down = subsums_down, .tile = tile_sums, .block = block_sums};
+static const LsmListKernels kernels = {.subsums = subsums, .tile = tile_sums, .block = block_sums};
 
 const LsmSums lsm_sums_naive = {
     .name = "naive",

@@ -89,8 +89,7 @@ SM_INLINE void plane_rows(const Lsm *lsm, const LsmRunningList *list, int z, Lev
     }
 }
 
-/* Bars and plates of a layer, up (way 0) or down (1). */
-SM_INLINE void subsums(const Lsm *lsm, const Rows *rows, int layer, int way, bool plain)
+SM_INLINE void subsums_pass(const Lsm *lsm, const Rows *rows, int layer, int way, bool plain)
 {
     const LsmRunningLists *lists = &lsm->running->lists;
     for (int z = lsm->layer_plane[layer]; z < lsm->layer_plane[layer + 1]; z++) {
@@ -99,43 +98,20 @@ SM_INLINE void subsums(const Lsm *lsm, const Rows *rows, int layer, int way, boo
     }
 }
 
-static void subsums_up(const Lsm *lsm, const Rows *rows, int layer, bool plain)
+static void subsums(const Lsm *lsm, const Rows *rows, int layer, int way, bool plain)
 {
-    if (plain)
-        subsums(lsm, rows, layer, 0, true);
-    else
-        subsums(lsm, rows, layer, 0, false);
+    FOR_PASS(way, plain, subsums_pass, lsm, rows, layer);
 }
 
-static void subsums_down(const Lsm *lsm, const Rows *rows, int layer, bool plain)
-{
-    if (plain)
-        subsums(lsm, rows, layer, 1, true);
-    else
-        subsums(lsm, rows, layer, 1, false);
-}
-
-/* Regions around the particles of a layer (way 0), or sums over them (1). */
-SM_INLINE void layer_rows(const Lsm *lsm, const Rows *rows, int layer, int way, bool plain)
+SM_INLINE void last_pass(const Lsm *lsm, const Rows *rows, int layer, int way, bool plain)
 {
     for (int z = lsm->layer_plane[layer]; z < lsm->layer_plane[layer + 1]; z++)
         plane_rows(lsm, &lsm->running->lists.region, z, region_level(rows, way, plain, true));
 }
 
-static void regions(const Lsm *lsm, const Rows *rows, int layer, bool plain)
+static void last(const Lsm *lsm, const Rows *rows, int layer, int way, bool plain)
 {
-    if (plain)
-        layer_rows(lsm, rows, layer, 0, true);
-    else
-        layer_rows(lsm, rows, layer, 0, false);
-}
-
-static void particles(const Lsm *lsm, const Rows *rows, int layer, bool plain)
-{
-    if (plain)
-        layer_rows(lsm, rows, layer, 1, true);
-    else
-        layer_rows(lsm, rows, layer, 1, false);
+    FOR_PASS(way, plain, last_pass, lsm, rows, layer);
 }
 
 static void tile_sums(const Lsm *lsm, const Rows *rows, long tile, bool plain, vec sum[12])
@@ -157,8 +133,7 @@ static void block_sums(const Lsm *lsm, const Rows *rows, long block, bool plain,
         for (int i = 0; i < (plain ? 6 : 3); i++) out[i][lane] = row[lane * 8 + i / 3 * 4 + i % 3];
 }
 
-static const LsmListKernels kernels = {subsums_up, subsums_down, regions,
-                                       particles,  tile_sums,    block_sums};
+static const LsmListKernels kernels = {subsums, last, tile_sums, block_sums};
 
 /* Where w is small the lists are as short; running sums subtract, so masses must be of like size;
  * rows that change one by one stay lists. */

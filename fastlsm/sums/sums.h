@@ -51,13 +51,12 @@ struct LsmPass {
 
 /* Sums over lists. */
 typedef struct {
-    /* Bars and plates of a layer, from the particles up and from the regions down. */
-    void (*subsums_up)(const Lsm *lsm, const Rows *rows, int layer, bool plain);
-    void (*subsums_down)(const Lsm *lsm, const Rows *rows, int layer, bool plain);
+    /* Bars and plates of a layer, from the particles up (way 0) or from the regions down (1). */
+    void (*subsums)(const Lsm *lsm, const Rows *rows, int layer, int way, bool plain);
 
-    /* The last stage of a whole layer, or NULL where it is done tile by tile and block by block. */
-    void (*regions)(const Lsm *lsm, const Rows *rows, int layer, bool plain);
-    void (*particles)(const Lsm *lsm, const Rows *rows, int layer, bool plain);
+    /* The last stage, of a layer's regions (way 0) or particles (1), or NULL where it is done tile
+     * by tile and block by block. */
+    void (*last)(const Lsm *lsm, const Rows *rows, int layer, int way, bool plain);
 
     /* The sums (LsmPass) of a tile, and over a block's particles that have lists. */
     void (*tile)(const Lsm *lsm, const Rows *rows, long tile, bool plain, vec sum[12]);

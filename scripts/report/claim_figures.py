@@ -12,8 +12,8 @@ from tables import Table, explain_marks
 GROUPS = {
     "sums": ("Cost of the sums against w", "FastLSM Fig. 4: nanoseconds a particle for the sums alone, in a solid cube, "
              "against the mean side of its regions; the exponent that fits stands with each curve.", "xy"),
-    "body-sums": ("Cost of the sums of a body against w", "FastLSM Fig. 4 is of the solid Buddha: the sums of the solid statue, "
-             "with its irregular regions, against their mean side.", "xy"),
+    "body-sums": ("Cost of the sums of a body against w", "FastLSM Fig. 4, which is of the solid Buddha: the sums of a cube and of "
+             "bodies with irregular regions, against their mean side.", "xy"),
     "body-additions": ("Additions of the sums of a body", "The same by additions a particle: an index of an irregular body "
                        "owns the more different bars and plates the wider its regions are.", "xy"),
     "additions": ("Additions of the sums", "FastLSM section 3.1 in a solid cube: additions an index by (2w+1)³, 3(2w+1) or "
@@ -144,7 +144,7 @@ def words(name):
 def label(name, curve):
     """What tells a curve from the others of its group, and the power that fits it."""
     parts = re.sub(r"\.[wn]\d+-\d+\.\d+$", "", name).split(".")[1:]
-    own = [words(part) for part in parts if part not in ("profile", curve["y_name"])]
+    own = [words(part.removesuffix("-solid")) for part in parts if part not in ("profile", curve["y_name"])]
     text = ", ".join(own) or words(name.split(".")[0])
     low, high = curve["exponent_low"], curve["exponent_high"]
     if name.startswith(("sums", "size", "body", "distances")) and curve["exponent"] == curve["exponent"]:
@@ -170,17 +170,26 @@ def draw_printed(axes, group, curves):
                   label=None if n else "paper: $s^3$, 3s, 6 additions")
 
 
+def styles(group, curves):
+    """Colour and mark of each curve: of sums of bodies a colour each way to sum, and a mark each body."""
+    if group != "body-sums":
+        return [(COLOURS[n % 7], MARKS[n % 7]) for n in range(len(curves))]
+    parts = [name.split(".")[1:3] for name, _ in curves]
+    bodies, ways = (list(dict.fromkeys(column)) for column in zip(*parts))
+    return [(COLOURS[ways.index(way) % 7], MARKS[bodies.index(body) % 7]) for body, way in parts]
+
+
 def group_figure(group, curves):
     """`curves` are (name, curve) of one group that have the same axes."""
     title, caption, logarithmic = GROUPS.get(kind_of(group), (words(group).capitalize(), "Measured for a claim.", ""))
     if group.endswith("-profile"):
         title += ": the profile"
-    figure, axes = canvas()
+    figure, axes = canvas(6.6) if group == "body-sums" else canvas()
     data, told = [], []
-    for n, (name, curve) in enumerate(curves):
+    for (name, curve), (colour, mark) in zip(curves, styles(group, curves)):
         x, y = curve["x"], curve["y"]
         spread = np.maximum(np.nan_to_num([y - curve["low"], curve["high"] - y]), 0)
-        axes.errorbar(x, y, yerr=spread if spread.any() else None, marker=MARKS[n % 7], color=COLOURS[n % 7],
+        axes.errorbar(x, y, yerr=spread if spread.any() else None, marker=mark, color=colour,
                       markersize=4, capsize=2, linewidth=1.3, label=label(name, curve))
         data += [[name, float(a), float(b), float(c), float(d)] for a, b, c, d in zip(x, y, curve["low"], curve["high"])]
         told.append(f"{label(name, curve)}: from {number(y[0])} at {number(x[0])} to {number(y[-1])} at {number(x[-1])}")
@@ -196,7 +205,7 @@ def group_figure(group, curves):
         axes.set_yscale("log")
     else:
         axes.axhline(0, color=PAPER, linewidth=0.6)
-    legend_above(axes, columns=5 if len(curves) > 4 else 2)
+    legend_above(axes, columns=2 if group == "body-sums" or len(curves) < 5 else 5)
     return Figure(group, title, caption, f"{y_name[:1].upper()}{y_name[1:]} against {x_name}. " + "; ".join(told) + ".",
                   ["curve", "x", "y", "low", "high"], data).draw(figure)
 
@@ -216,6 +225,11 @@ def figures(source):
             continue
         group = name.split(".")[0] + ("-profile" if name.endswith(".profile") else "")
         groups.setdefault((group, curve["x_name"], curve["y_name"]), []).append((name, curve))
+    cube = [(f"body-sums.cube.{name[5:]}", curve) for (group, _, _), some in groups.items() if group == "sums"
+            for name, curve in some if "lists" not in name and "blocks" not in name]
+    for (group, _, _), some in groups.items():
+        if group == "body-sums":
+            some[:0] = cube
     order = list(GROUPS)
     ranked = sorted(groups, key=lambda g: (order.index(kind_of(g[0])) if kind_of(g[0]) in order else 99, g))
     made = [group_figure(key[0], groups[key]) for key in ranked]

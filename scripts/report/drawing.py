@@ -19,7 +19,7 @@ COLOURS = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#9
 MARKS = ["o", "s", "^", "D", "v", "P", "X"]
 PAPER = "#777777"
 WIDTH = 12  # inches, of every figure: a page's width at 1,400 pixels then shows 10 points as 16 pixels
-STATUS_MARKS = {"damaged": "?", "second-hand": "*"}  # how a paper's value came to us (results/README.md)
+STATUS_MARKS = {"ours": "~", "damaged": "?", "second-hand": "*"}  # how a paper's value came to us (results/README.md)
 
 matplotlib.rcParams.update({
     "font.size": 10, "axes.titlesize": 10, "axes.spines.top": False, "axes.spines.right": False,

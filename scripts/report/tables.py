@@ -45,7 +45,8 @@ def class_of(column):
 def explain_marks(statuses):
     """What the marks of these values mean."""
     words = {"?": "a question mark is behind a value that is damaged in our text of the paper, or misprinted",
-             "*": "a star is behind a value that we know from another source than the paper"}
+             "*": "a star is behind a value that we know from another source than the paper",
+             "~": "a tilde is behind a number of ours, where the paper says it in words"}
     marks = sorted({STATUS_MARKS[status] for status in statuses if status in STATUS_MARKS}, reverse=True)
     text = "; ".join(words[mark] for mark in marks)
     return f" {text[0].upper()}{text[1:]}." if text else ""
