@@ -105,8 +105,9 @@ static void fill_blocks(Lsm *lsm, Blocks *box)
     box->run[box->plane_run[planes]] = (BlockRun){.first = (int)lsm->blocks};
 }
 
-/* In the last run of the row that does not begin after it. */
-int lsm_blocks_at(const Lsm *lsm, int column, int y, int z)
+/* The block of `column` in row y of plane z, or the empty block: of the last run of the row that
+ * does not begin after it. */
+static int block_at(const Lsm *lsm, int column, int y, int z)
 {
     const Blocks *box = lsm->box;
     const int *size = lsm->lattice.size;
@@ -135,9 +136,9 @@ static void find_neighbours(const Lsm *lsm, Blocks *box, int z, BlockRun *run)
     run->moves_z = box->running && z % RESTART;
     for (int i = 0; i < run->count; i++) {
         int column = run->column + i, *along = box->along_z + (run->first + i) * (long)lsm->side;
-        for (int c = -w; c <= w; c++) along[c + w] = lsm_blocks_at(lsm, column, run->y, z + c);
+        for (int c = -w; c <= w; c++) along[c + w] = block_at(lsm, column, run->y, z + c);
         box->place[run->first + i] = run->y * box->width + column;
-        if (run->moves_y) run->moves_y = lsm_blocks_at(lsm, column, run->y - 1, z) != none;
+        if (run->moves_y) run->moves_y = block_at(lsm, column, run->y - 1, z) != none;
         if (run->moves_z) run->moves_z = along[w - 1] != none;
     }
 }
@@ -153,7 +154,7 @@ static void find_all_neighbours(const Lsm *lsm, Blocks *box)
 }
 
 /* A bitmap of what sums along z and y may pass through: sites whose blocks exist, but at w = 1
- * particles only (`masked` in boxes.c). */
+ * particles only (through() in boxes.c). */
 static uint64_t *passable_sites(const Lsm *lsm)
 {
     const LsmLattice *l = &lsm->lattice;
@@ -213,7 +214,7 @@ static uint64_t way(const Lsm *lsm, const int *at, int b, int c)
 
 /* Up, member i passes through (x_i, y_i, z_r) and (x_r, y_i, z_r); down, region r passes through
  * (x_r, y_i, z_r) and (x_i, y_i, z_r). Sites between must be summed at all. */
-void lsm_blocks_taken(const Lsm *lsm, long p, uint64_t *up, uint64_t *down)
+bool lsm_blocks_regular(const Lsm *lsm, long p, const uint64_t *rows)
 {
     const LsmLattice *l = &lsm->lattice;
     const int *at = l->coord[p];
@@ -221,17 +222,10 @@ void lsm_blocks_taken(const Lsm *lsm, long p, uint64_t *up, uint64_t *down)
     for (int row = 0; row < side * side; row++) {
         int b = row % side - w, c = row / side - w;
         uint64_t box = lsm_window(l, l->bits, at[0], at[1] + b, at[2] + c, w);
-        up[row] = box & way(lsm, at, b, 0);
-        down[row] = box & way(lsm, at, 0, c);
+        if ((box & way(lsm, at, b, 0)) != rows[row] || (box & way(lsm, at, 0, c)) != rows[row])
+            return false;
     }
-}
-
-bool lsm_blocks_regular(const Lsm *lsm, long p, const uint64_t *rows)
-{
-    size_t size = (size_t)(lsm->side * lsm->side) * sizeof *rows;
-    uint64_t up[LSM_MAX_SIDE * LSM_MAX_SIDE], down[LSM_MAX_SIDE * LSM_MAX_SIDE];
-    lsm_blocks_taken(lsm, p, up, down);
-    return !memcmp(up, rows, size) && !memcmp(down, rows, size);
+    return true;
 }
 
 /* Reals of scratch that one thread needs: see boxes.c. */

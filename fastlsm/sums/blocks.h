@@ -6,8 +6,6 @@
 #include "../state.h"
 
 #define lsm_blocks_build   SM_NAME(lsm_blocks_build)
-#define lsm_blocks_at      SM_NAME(lsm_blocks_at)
-#define lsm_blocks_taken   SM_NAME(lsm_blocks_taken)
 #define lsm_blocks_regular SM_NAME(lsm_blocks_regular)
 #define lsm_blocks_share   SM_NAME(lsm_blocks_share)
 #define lsm_blocks_free    SM_NAME(lsm_blocks_free)
@@ -53,13 +51,6 @@ struct Blocks {
 
 /* Blocks, rows and neighbours of the lattice; sets lsm->blocks, slot, particle, layers. */
 void lsm_blocks_build(Lsm *lsm);
-
-/* The block of `column` in row y of plane z, or the empty block. */
-int lsm_blocks_at(const Lsm *lsm, int column, int y, int z);
-
-/* The sites of particle p's window (region.h) that its box sum takes, on the way up to the region
- * and down to the particle: [(2w+1)^2] rows each. */
-void lsm_blocks_taken(const Lsm *lsm, long p, uint64_t *up, uint64_t *down);
 
 /* Is the box sum of particle p, whose members are `rows` (region.h), its region's sum? O(w^2). */
 bool lsm_blocks_regular(const Lsm *lsm, long p, const uint64_t *rows);
