@@ -64,7 +64,7 @@ struct RefWalk {
 
 RefMembers ref_members(const RefRegions *regions, long r)
 {
-    if (!regions->walk)
+    if (regions->member)
         return (RefMembers){regions->member + regions->start[r],
                             regions->start[r + 1] - regions->start[r]};
     struct RefWalk *walk = regions->walk + omp_get_thread_num();

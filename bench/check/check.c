@@ -72,8 +72,9 @@ static void begin_lattice(const BenchScene *scene, const BenchBody *body, const 
     int(*pair)[2] = NULL;
     if (bench_engine_params(scene, body, 1).strain_limit > 0)
         pair = bench_parted(body, type, engine, &parted);
+    long wrong = body->cut ? bench_parted_wrong(body, parted, pair) : 0;
     bench_check_create(body, scene->params.w, parted, pair, check);
-    if (body->cut) check->parted_wrong = bench_parted_wrong(body, parted, pair);
+    check->parted_wrong = wrong;
 }
 
 static void begin_tree(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
