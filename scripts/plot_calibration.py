@@ -52,8 +52,6 @@ def two_terms(plan, law, engine, w):
 
 def modulus(axes, plan, specimen, law):
     """Young's modulus over w on the scene's beam: a line an epsilon, the law dashed."""
-    from matplotlib.ticker import LogFormatterSciNotation, LogLocator
-
     grid = valid_grid(specimen)
     for sampled, engine in engines(specimen):
         its = grid & (specimen["engine"] == engine)
@@ -79,10 +77,6 @@ def modulus(axes, plan, specimen, law):
     axes.set_yscale("log")
     ticks = numpy.unique(specimen["w"][grid])
     axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
-    low, high = axes.get_ylim()
-    if high < 100 * low:  # powers of ten alone would be one tick or two
-        axes.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-        axes.yaxis.set_major_formatter(LogFormatterSciNotation(minor_thresholds=(numpy.inf, numpy.inf)))
     axes.minorticks_off()
     axes.set_xlim(max(0.5, w[0] - 0.2), w[-1] + 0.5)
     axes.set_xlabel("w, cells")
@@ -154,6 +148,9 @@ def main():
     agreement(axes[1], plan, specimen)
     axes[0].set_title("the elastic body that behaves alike; dotted: the two-term law", fontsize=9)
     axes[1].set_title("do the frequencies say the same as the sag? all beams, at the first epsilon", fontsize=9)
+    import ticks
+
+    ticks.label_logarithms(figure)
     figure.suptitle(f"{plan['scene']}: {len(specimen['w'])} of {plan['specimens']} specimens, {plan['across']} cells "
                     f"thick, {plan['aspect']} times as long, step {plan['h']:g} s", fontsize=10)
     write(figure, arguments.output, arguments.overwrite)

@@ -29,15 +29,6 @@ def unit_of_w(plan):
     return "w, edges of each node's cell" if plan["width"] == "edges" else "w, finest cells"
 
 
-def plain_ticks(axis):
-    """Of a logarithmic axis: 0.5, 1, 2 in place of powers of ten."""
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
-
-    axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axis.set_minor_formatter(NullFormatter())
-
-
 def heat_map(axes, plan, point, values, title, logarithmic):
     tree = point["sampled"]
     ws, epsilons = numpy.unique(point["w"]), numpy.unique(point["epsilon"][tree])
@@ -52,9 +43,7 @@ def heat_map(axes, plan, point, values, title, logarithmic):
 
         norm = LogNorm(known.min(), max(known.max(), 1.001 * known.min())) if logarithmic else None
         image = axes.imshow(cells, origin="lower", aspect="auto", cmap="viridis", norm=norm)
-        bar = axes.figure.colorbar(image, ax=axes, pad=0.02)
-        if logarithmic:
-            plain_ticks(bar.ax.yaxis)
+        axes.figure.colorbar(image, ax=axes, pad=0.02)
         size = min(9, 24 * axes.bbox.width / axes.figure.dpi / cells.shape[1])  # three fit in a cell
         for (row, column), value in numpy.ndenumerate(cells):
             if cells.size <= 200 and numpy.isfinite(value):
@@ -97,8 +86,6 @@ def front(axes, point):
         axes.annotate(f"{w:g}", (stiff[i], cost[i]), (0, 5), textcoords="offset points", ha="center", fontsize=8)
     axes.set_xscale("log")
     axes.set_yscale("log")
-    plain_ticks(axes.xaxis)
-    plain_ticks(axes.yaxis)
     axes.margins(y=0.1)
     axes.legend()
     axes.figure.colorbar(dots, ax=axes, pad=0.02, label="path off, percent of the body's size")
@@ -108,13 +95,17 @@ def main():
     arguments = parse(__doc__, "of shapebench sweep", "svg")
     source = read(arguments.file, "sweep")
     plan, point = source.plan, source.point
-    figure, axes = drawing().subplots(2, 2, figsize=(11, 8), layout="constrained")
+    pyplot = drawing()
+    import ticks
+
+    figure, axes = pyplot.subplots(2, 2, figsize=(11, 8), layout="constrained")
     maps = ((axes[0][0], point["total_ms"], "ms a step", True),
             (axes[0][1], 100 * point["path_rms"], "path off: surface from full resolution, % of size, rms", False),
             (axes[1][0], point["frequency"], "first frequency of the regular beam, Hz", True))
     for place, values, title, logarithmic in maps:
         heat_map(place, plan, point, values, title, logarithmic)
     front(axes[1][1], point)
+    ticks.label_logarithms(figure)
     figure.suptitle(f"{plan['scene']}: {len(point['w'])} of {plan['points']} points", fontsize=10)
     write(figure, arguments.output, arguments.overwrite)
 

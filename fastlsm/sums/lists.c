@@ -117,19 +117,16 @@ static long *first_slots(const Lsm *lsm, bool all)
     return first;
 }
 
-/* Sums member by member read p and transforms of all layers: these are all threads' then. */
 void lsm_rows_place(Lsm *lsm, const int *region_plane)
 {
     LsmLists *lists = &lsm->lists;
     int *bar, *plate, *slot;
-    bool naive = lsm->sums == &lsm_sums_naive;
+    bool whole = lsm->sums->whole; /* all threads' then */
     lsm_rows_free(lsm);
-    long *places = sm_alloc((size_t)lsm->layers, sizeof *places), *first = first_slots(lsm, naive);
+    long *places = sm_alloc((size_t)lsm->layers, sizeof *places), *first = first_slots(lsm, whole);
     size_t plates = (size_t)turn_plates(lsm, places) + 1,
            slots = (size_t)find_shifts(lsm, first, false, NULL, &slot) + 1,
-           bars = (size_t)find_shifts(lsm, lists->bar_plane, lsm->sums == &lsm_sums_running, NULL,
-                                      &bar) +
-                  1;
+           bars = (size_t)find_shifts(lsm, lists->bar_plane, lsm->sums->by_plane, NULL, &bar) + 1;
     find_shifts(lsm, lists->plate_plane, false, places, &plate);
     lsm_lists_place(lists, bar, plate, slot, region_plane);
     sm_free_all(places, first);
@@ -138,7 +135,7 @@ void lsm_rows_place(Lsm *lsm, const int *region_plane)
          *down = sm_alloc(plates * ROW_WIDTH, sizeof(real));
     for (int t = 0; t < lsm->threads; t++) {
         Rows *rows = &lsm->rows[t];
-        if (t && naive)
+        if (t && whole)
             *rows = lsm->rows[0];
         else
             *rows = (Rows){.p = sm_alloc(slots * ROW_P, sizeof(real)),

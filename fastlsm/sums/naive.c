@@ -109,5 +109,6 @@ const LsmSums lsm_sums_naive = {
     .lay_out = lsm_lists_lay_out,
     .phase = {lsm_lists_subsums, lsm_lists_solve, lsm_lists_end},
     .lists = &kernels,
+    .whole = true,
     .layer_planes = 1,
 };

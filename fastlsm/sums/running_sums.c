@@ -177,5 +177,6 @@ const LsmSums lsm_sums_running = {
     .open = open_running,
     .phase = {lsm_lists_subsums, lsm_lists_solve, lsm_lists_end},
     .lists = &kernels,
+    .by_plane = true,
     .layer_planes = 8, /* that lists along z run through; w where that is more */
 };

@@ -71,6 +71,8 @@ struct LsmSums {
     void (*open)(Lsm *lsm);          /* what is made of lists and constants, or NULL */
     LsmPhase *phase[3];              /* of a pass: pipeline.h */
     const LsmListKernels *lists;     /* of the regions that have lists */
+    bool by_plane;                   /* bars are kept of one plane at a time, not of a layer */
+    bool whole;                      /* p and transforms are kept of all layers, not of one */
     int layer_planes;                /* least planes of a layer */
 };
 

@@ -10,7 +10,8 @@ import matplotlib
 
 matplotlib.use("Agg")
 from matplotlib import pyplot  # noqa: E402
-from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator  # noqa: E402
+
+from ticks import label_logarithms  # noqa: E402
 
 # Scripts that draw a file by themselves, and what they draw with, are a folder above.
 sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir))
@@ -45,33 +46,6 @@ def lighter(svg):
         return re.sub(r"-?\d+\.\d{3,}", lambda value: f"{float(value[0]):.2f}".rstrip("0").rstrip("."), words)
 
     return re.sub(r"\s*\n\s*", "\n", re.sub(r"<[^>]*>", tag, text)).encode()
-
-
-def plain(value, _=None):
-    return f"{value:,.7g}"
-
-
-def power(value, _=None):
-    digits, exponent = f"{value:.0e}".split("e")
-    return f"{'' if digits == '1' else digits + '·'}10$^{{{int(exponent)}}}$"
-
-
-def label_logarithms(figure):
-    """Every logarithmic axis with the usual ticks has labels that can be read: plain numbers where they are short, and
-    where it shows less than two decades also between powers of ten."""
-    for axis in (axis for axes in figure.axes for axis in (axes.xaxis, axes.yaxis)):
-        if axis.get_scale() != "log" or not isinstance(axis.get_major_locator(), LogLocator):
-            continue
-        low, high = sorted(axis.get_view_interval())
-        tick = plain if 1e-4 < low and high < 1e7 else power
-        if high < 3 * low:
-            axis.set_major_locator(MaxNLocator(6))
-            axis.set_minor_locator(NullLocator())
-        else:
-            few = high < 100 * low
-            axis.set_minor_locator(LogLocator(subs=(2, 3, 5) if few else range(2, 10), numticks=99))
-            axis.set_minor_formatter(FuncFormatter(tick) if few else NullFormatter())
-        axis.set_major_formatter(FuncFormatter(tick))
 
 
 class Figure:

@@ -37,6 +37,7 @@ import row_figures  # noqa: E402
 import sources  # noqa: E402
 import stored  # noqa: E402
 import tables  # noqa: E402
+import ticks  # noqa: E402
 
 PROGRAM = sys.argv.pop(1)
 SOURCES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
@@ -327,7 +328,7 @@ class Report(unittest.TestCase):
             figure, axes = drawing.canvas()
             axes.plot([low, high], [low, high])
             axes.set_xscale("log")
-            drawing.label_logarithms(figure)
+            ticks.label_logarithms(figure)
             figure.draw_without_rendering()
             left, right = axes.get_xlim()
             shown = [label.get_text() for minor in (False, True) for label in axes.get_xticklabels(minor=minor)
@@ -336,7 +337,7 @@ class Report(unittest.TestCase):
             self.assertGreaterEqual(len(shown), 2, (low, high))
             for text in shown:
                 self.assertRegex(text, r"^[\d.,]+$")
-        self.assertEqual((drawing.power(2e8), drawing.power(1e-7), drawing.plain(1200.0)), ("2·10$^{8}$", "10$^{-7}$", "1,200"))
+        self.assertEqual((ticks.power(2e8), ticks.power(1e-7), ticks.plain(1200.0)), ("2·10$^{8}$", "10$^{-7}$", "1,200"))
 
     def test_a_calibration_says_what_it_found(self):
         path = self.at("beam.h5")
