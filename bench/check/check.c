@@ -117,7 +117,7 @@ void bench_check_begin(const BenchScene *scene, const BenchBody *body, const SmE
     bench_engine(type->name)->twin->begin(scene, body, type, engine, check);
 }
 
-/* Places spread over the body: multiples of the golden ratio. */
+/* Of places spread over the body. */
 void bench_check_sample(const BenchBody *body, int w, BenchCheck *check)
 {
     const long most = 64, count = body->voxels.particle_count;
@@ -128,11 +128,8 @@ void bench_check_sample(const BenchBody *body, int w, BenchCheck *check)
     check->w = w;
     check->sample = sm_alloc((size_t)places * BENCH_SAMPLE_RUN, sizeof *check->sample);
     for (long i = 0; i < places; i++)
-        for (int k = 0; k < BENCH_SAMPLE_RUN; k++) {
-            double at = fmod(0.5 + (double)i * 0.6180339887498949, 1);
-            long p = (long)(at * (double)check->count) + k;
-            check->sample[check->samples++] = p % check->count;
-        }
+        for (int k = 0; k < BENCH_SAMPLE_RUN; k++)
+            check->sample[check->samples++] = (count * (2 * i + 1) / (2 * places) + k) % count;
     ref_links_build(&body->voxels, NULL, 0, &check->links);
     for (long p = 0; p < check->count; p++) check->mass[p] = body->mass ? body->mass[p] : 1;
 }

@@ -710,7 +710,9 @@ TEST(a_sample_is_held_to_brute_force)
                                                                        .type = plate.type,
                                                                        .engine = plate.engine});
         assert_true(bench_check_verdict(&found, sizeof reason, reason));
-        assert_true(found.goal_error > 0 && found.goal_error <= check_plate(&plate).goal_error);
+        /* members come in another order, which rounds their sums otherwise in double precision */
+        double all = check_plate(&plate).goal_error + 1e-12;
+        assert_true(found.goal_error > 0 && found.goal_error <= all);
         bench_check_text(&found, sizeof text, text);
         assert_non_null(strstr(text, "goals of 1024 of 2814 particles (36%) compared"));
         wrong_type(&plate)->get = push_goals;
