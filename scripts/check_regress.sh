@@ -9,7 +9,7 @@
 # program with itself from it: the samples, in their order, are dealt out to builds and rounds as
 # `regress` does, and judged by the same code (bench/regress/replay.c). Scenes of long steps take minutes each.
 #
-# usage: scripts/check_regress.sh [SCENE [ROUNDS [TIMES]]]     default: infant 10 10
+# usage: scripts/check_regress.sh [SCENE [ROUNDS [TIMES]]]     default: infant 8 10
 #        scripts/check_regress.sh --replay [SCENE...]          default: all but the three slowest
 # exit codes: 0 as it should be, 1 not caught or a false alarm, 2 not so called, 3 no build/shapebench (scripts/run makes it)
 set -u
@@ -23,9 +23,9 @@ cd -- "$root" || exit 1
 scratch=$(mktemp -d) || exit 1
 trap 'rm -rf -- "$scratch" build/shapebench-slow build/shapebench-same' EXIT
 
-# Samples for fifty comparisons of seven rounds, so many in each turn of a build.
+# Samples for fifty comparisons of eight rounds, so many in each turn of a build.
 record() {
-    build/shapebench tables --quiet --scene "$1" --repeats $((50 * 7 * 4 * $2)) --block 0.05 --overwrite \
+    build/shapebench tables --quiet --scene "$1" --repeats $((50 * 8 * 4 * $2)) --block 0.05 --overwrite \
         -o "$scratch/series.h5" >/dev/null
 }
 
@@ -38,7 +38,7 @@ replay() {
     elif [ "$took" -lt 6 ]; then
         record "$1" 2 || return 1
     fi
-    build/replay 50 7 "$scratch/series.h5"
+    build/replay 50 8 "$scratch/series.h5"
 }
 
 if [ "${1:-}" = --replay ]; then
@@ -59,7 +59,7 @@ if [ "${1:-}" = --replay ]; then
     exit "$failed"
 fi
 
-scene=${1:-infant} rounds=${2:-10} times=${3:-10}
+scene=${1:-infant} rounds=${2:-8} times=${3:-10}
 revision=${REVISION:-HEAD}
 case $scene in -*) usage ;; esac
 for number in "$rounds" "$times"; do

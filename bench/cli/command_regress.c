@@ -56,10 +56,10 @@ static const BenchSetting settings[] = {
                   "Compare this scene only; may be repeated (default: all of the file, or of the "
                   "paper)"),
      BENCH_IN(Options, scenes)},
-    {BENCH_OPTION(
-         "rounds", "N", 2,
-         "Rounds of two processes of each build and scene (default: 10 or as many as the test "
-         "needs, or 3 beside a file)"),
+    {BENCH_OPTION("rounds", "N", 2,
+                  "Rounds of two processes of each build and scene (default: 8 or as many as the "
+                  "test needs, "
+                  "or 3 beside a file)"),
      BENCH_IN(Options, rounds), 1, 1000},
     {BENCH_OPTION("quick", NULL, 2,
                   "As few rounds as can show a difference, and a third of the repeats: sees what "
@@ -237,7 +237,7 @@ static SmCode choose_rounds(Session *session, SmError *error)
     session->rounds = options->rounds     ? options->rounds
                       : options->quick    ? least
                       : options->baseline ? 3
-                                          : 10;
+                                          : 8;
     if (options->baseline || session->rounds >= least) return SM_OK;
     if (!options->rounds) {
         session->rounds = least;

@@ -142,17 +142,11 @@ static BenchTimes times_of(const BenchSide *side, int value)
 static void compare_interleaved(const BenchTimes *old, const BenchTimes *new,
                                 const BenchCompareParams *params, BenchComparison *result)
 {
-    size_t rounds = (size_t)params->rounds + 1;
-    double *left = sm_alloc(rounds, sizeof *left), *right = sm_alloc(rounds, sizeof *right);
     BenchRatio ratio = bench_ratio_paired(old, new, params->rounds, params->seed);
-    int lefts = bench_round_best(old, params->rounds, left);
-    int rights = bench_round_best(new, params->rounds, right);
-    result->p = bench_mann_whitney(left, lefts, right, rights);
+    result->p = bench_mann_whitney(old->value, old->count, new->value, new->count);
     result->self[BENCH_OLD] = bench_self_noise(old, params->rounds, params->seed);
     result->self[BENCH_NEW] = bench_self_noise(new, params->rounds, params->seed);
     result->ratio = ratio.ratio, result->low = ratio.low, result->high = ratio.high;
-    free(left);
-    free(right);
 }
 
 static void compare_apart(const BenchTimes *old, const BenchTimes *new, int comparisons,
@@ -205,7 +199,7 @@ static BenchComparisonVerdict judge(BenchComparison *result, int comparisons,
     double limit = isnan(params->threshold) ? BENCH_NOISE_LIMIT : params->threshold;
     result->threshold = fmax(noise, isnan(params->threshold) ? least : params->threshold);
     bool few = params->interleaved
-                   ? finds_nothing(params->rounds, params->rounds, comparisons)
+                   ? params->rounds < bench_compare_rounds(comparisons)
                    : side[BENCH_NEW].count < BENCH_LEAST_PROCESSES ||
                          finds_nothing(side[BENCH_OLD].blocks, side[BENCH_NEW].blocks, comparisons);
     if (few || isnan(noise)) return BENCH_TOO_FEW;
@@ -278,8 +272,8 @@ void bench_comparisons_free(BenchComparison *list, int count)
 
 int bench_compare_rounds(int comparisons)
 {
-    int rounds = 1;
-    while (finds_nothing(rounds, rounds, comparisons)) rounds++;
+    int rounds = 2; /* what the noise takes */
+    while (finds_nothing(2 * rounds, 2 * rounds, comparisons)) rounds++;
     return rounds;
 }
 

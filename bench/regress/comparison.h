@@ -3,13 +3,13 @@
  *
  * A time is called slower or faster where all of this holds: the ratio of the lower quartiles over
  * processes (beside a file: medians) lies beyond the threshold; its 95% bootstrap interval does not
- * hold 1; and p of the Mann-Whitney test over the rounds' faster processes, adjusted by Holm for
- * all times of all scenes, is below 0.01: of a hundred runs without a difference one at most gives
- * an alarm. The threshold is what the same code differs from itself
- * by (statistic.h), and at least 2%, of a stage also what is 0.5% of the step, or 10% against a
- * stored file, whose one process may have had a slow second. Beside a file the test is over the
- * repeats, which are not independent: there the threshold decides, which takes one process of the
- * file for a draw from as many as this build's differ by. */
+ * hold 1; and p of the Mann-Whitney test over all processes, adjusted by Holm for all times of all
+ * scenes, is below 0.01: of a hundred runs without a difference one at most gives an alarm. What a
+ * round's processes have in common they share with the other build's. The threshold is what the
+ * same code differs from itself by (statistic.h), and at least 2%, of a stage also what is 0.5% of
+ * the step, or 10% against a stored file, whose one process may have had a slow second. Beside a
+ * file the test is over the repeats, which are not independent: there the threshold decides, which
+ * takes one process of the file for a draw from as many as this build's differ by. */
 #ifndef BENCH_COMPARISON_H
 #define BENCH_COMPARISON_H
 

@@ -238,14 +238,16 @@ static void write_outliers(FILE *file, const BenchRegression *found, int first, 
     if (any) fputc('\n', file);
 }
 
-/* What is surely other, and by less than is called so. */
+/* What is other by its interval, and is not called so: it is little, or by chance. */
 static void write_small(FILE *file, const BenchComparison *one, const char *bullet)
 {
     bool total = !one->value || one->value >= BENCH_TIMES;
     if (!total || one->verdict != BENCH_SAME || (one->low <= 1 && one->high >= 1)) return;
-    fprintf(file, "%s%s: %s %.1f%% %s, below the threshold of %.1f%%\n", bullet,
-            one->samples->scene, bench_value_name(one->samples, one->value),
-            100 * fabs(one->ratio - 1), one->ratio > 1 ? "slower" : "faster", 100 * one->threshold);
+    bool small = fabs(log(one->ratio)) <= log1p(one->threshold);
+    fprintf(file, "%s%s: %s %.1f%% %s, %s the threshold of %.1f%%%s\n", bullet, one->samples->scene,
+            bench_value_name(one->samples, one->value), 100 * fabs(one->ratio - 1),
+            one->ratio > 1 ? "slower" : "faster", small ? "below" : "beyond", 100 * one->threshold,
+            small ? "" : ", but of so few processes by chance: take more --rounds");
 }
 
 static void write_remarks(FILE *file, const BenchRegression *found, const char *bullet)

@@ -223,7 +223,7 @@ TEST(what_nobody_could_judge_is_not_ok)
     bench_regression_summary(&found, sizeof line, line);
     assert_non_null(strstr(line, "no verdict on any of 6 times (0 too noisy"));
     const BenchCompareParams beside = {false, 1, NAN, 1, false, false};
-    assert_non_null(strstr(line, "6 with too few samples): take at least --rounds 7"));
+    assert_non_null(strstr(line, "6 with too few samples): take at least --rounds 4"));
     assert_int_equal(bench_comparisons_rounds(list, found.count, &beside), 3);
     list[2].verdict = BENCH_SAME;
     assert_int_equal(bench_comparisons_exit(list, found.count), SM_OK);
@@ -518,6 +518,27 @@ TEST(no_verdict_by_one_of_three)
         bench_ab_free(&all);
     }
     assert_true(seen[0] > 0 && seen[1] > 0);
+}
+
+TEST(what_may_be_by_chance_is_said)
+{
+    static char text[16384];
+    const BenchCompareParams params = {true, 8, NAN, 1, false, false};
+    BenchRegression found = {.params = &params};
+    BenchAbSamples all = {0};
+    BenchComparison *list;
+    play(&all, "a", 8, 1, 0.02);
+    found.count = bench_compare(&all, &params, &list);
+    found.list = list;
+    list->low = 1.1, list->ratio = 1.5, list->high = 2, list->threshold = 0.02;
+    FILE *file = fopen(path_in("chance.txt"), "w");
+    bench_regression_write(file, BENCH_REGRESSION_TEXT, &found);
+    fclose(file);
+    read_back("chance.txt", sizeof text, text);
+    assert_non_null(
+        strstr(text, "a: total 50.0% slower, beyond the threshold of 2.0%, but of so few"));
+    bench_comparisons_free(list, found.count);
+    bench_ab_free(&all);
 }
 
 /* Of twenty rounds three are the other way round: each test but the interval's is sure. */

@@ -279,18 +279,6 @@ double bench_spread_noise(const BenchTimes *times, int a_count, double level, in
     return expm1(t * deviation * sqrt(1.0 / n + 1.0 / a_count));
 }
 
-int bench_round_best(const BenchTimes *times, int rounds, double *best)
-{
-    int found = 0;
-    for (int r = 0; r < rounds; r++) {
-        best[found] = INFINITY;
-        for (int i = 0; i < times->count; i++)
-            if (times->group[i] == r) best[found] = fmin(best[found], times->value[i]);
-        found += isfinite(best[found]);
-    }
-    return found;
-}
-
 double bench_least_p(int a_count, int b_count)
 {
     return 2 * exp(-gsl_sf_lnchoose((unsigned)(a_count + b_count), (unsigned)a_count));

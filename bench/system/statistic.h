@@ -84,10 +84,6 @@ double bench_self_noise(const BenchTimes *times, int rounds, unsigned long seed)
  * 3. */
 double bench_spread_noise(const BenchTimes *times, int a_count, double level, int comparisons);
 
-/* The least value of each round that has one, in `best`, which has room for `rounds`; returns how
- * many. Rounds are independent of each other, which processes of a round are not. */
-int bench_round_best(const BenchTimes *times, int rounds, double *best);
-
 /* The least p that bench_mann_whitney() can find in two sets of so many values without ties. */
 double bench_least_p(int a_count, int b_count);
 

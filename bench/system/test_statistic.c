@@ -146,14 +146,8 @@ TEST(the_interval_holds_the_ratio)
     assert_in_range(apart, 85, TRIALS);
 }
 
-TEST(a_round_counts_with_its_best)
+TEST(the_least_p_is_that_of_two_sets_apart)
 {
-    const double value[] = {3, 2, 7, 5, 6};
-    const int group[] = {0, 0, 2, 2, 2};
-    const BenchTimes times = {value, group, 5};
-    double best[4];
-    assert_int_equal(bench_round_best(&times, 3, best), 2);
-    assert_true(best[0] == 2 && best[1] == 5);
     const double low[] = {1, 2, 3, 4, 5}, high[] = {6, 7, 8, 9, 10};
     near(bench_least_p(5, 5), bench_mann_whitney(low, 5, high, 5), 1e-9);
 }
