@@ -4,6 +4,8 @@
 
 #include "../../lib/isa.h"
 #include "../../lib/printable.h"
+#include "../../lib/system/cores.h"
+#include "../../lib/system/team.h"
 #include "../../reference/meshless/solve/solver.h"
 #include "../../reference/paper.h"
 #include "../engines.h"
@@ -258,16 +260,19 @@ static SmCode measure_scene(const Options *options, const Choice *choice, BenchP
         substitute = bench_substitute_find(&chosen->substitutes, choice->stem);
     name_set(options, choice, &scene);
     bench_progress_show(progress, scene.name, 0);
+    int team = sm_team_enter(sm_cores("")); /* meshes and checks are not timed */
     code = bench_body_of_scene(&scene, substitute, &body, error);
-    if (code) return code;
     BenchMeasureParams params = {.repeats = options->repeats,
                                  .block_seconds = options->block / 1e3,
                                  .threads = options->common.threads,
                                  .seed = options->common.seed,
                                  .checked = options->checked,
                                  .progress = progress};
-    code = bench_measure(&scene, &body, type, &params, row, error);
-    bench_body_free(&body);
+    if (!code) {
+        code = bench_measure(&scene, &body, type, &params, row, error);
+        bench_body_free(&body);
+    }
+    sm_team_leave(team);
     return code;
 }
 

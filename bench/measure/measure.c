@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "../../lib/isa.h"
+#include "../../lib/system/team.h"
 #include "../../reference/paper.h"
 #include "../check/check.h"
 #include "../engines.h"
@@ -161,7 +162,9 @@ static SmCode play_changes(const BenchScene *scene, const BenchBody *body, const
     BenchChangeRowParams frames = {params->threads, ROUNDS, params->seed, params->progress,
                                    row->valid && !row->busy ? row->reason : NULL};
     BenchPlayback play;
+    int team = sm_team_enter(params->threads);
     SmCode code = bench_change_row_measure(scene, body, type, &frames, &row->change, &play, error);
+    sm_team_leave(team);
     if (code) return code;
     void *check = checker->begin ? checker->begin(&play) : NULL;
     checker->state(check, &play, worst, row);
@@ -234,7 +237,9 @@ static SmCode measure_burst(const BenchScene *scene, const BenchBody *body,
     SmCode code = bench_burst_create(scene, params->threads, &burst, error);
     if (code) return code;
     name_row(scene, body, type, params, row);
+    int team = sm_team_enter(params->threads);
     code = play_rounds(scene, body, type, params, worst, &burst, &play, row, error);
+    sm_team_leave(team);
     if (!code) {
         code = bench_playback_change(&play, error); /* the surface that is checked */
         if (!code) bench_engine(type->name)->checker->state(NULL, &play, worst, row);
@@ -262,7 +267,9 @@ static void measure_start(Trial *trial, const BenchChecker *checker,
     else
         checker->state(check, &trial->play, worst, row);
     save(trial);
+    int team = sm_team_enter(params->threads);
     bench_time_steps(&(BenchTimed){trial, restore, step}, params, row);
+    sm_team_leave(team);
     if (checked) return;
     checker->state(check, &trial->play, worst, row);
     if (checker->end) checker->end(check, &trial->play, worst, row);
