@@ -3,11 +3,13 @@
 runs them.
 
 usage: test_shapebench.py SHAPEBENCH LIBRARY [unittest's arguments]"""
+import contextlib
 import ctypes
 import dataclasses
 import gc
 import importlib.util
 import inspect
+import io
 import os
 import pathlib
 import re
@@ -16,6 +18,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import types
 import unittest
 import unittest.mock
 
@@ -104,6 +107,7 @@ class Declarations(unittest.TestCase):
         self.assertEqual(fields(sb.Criterion), members("sb_criterion"))
         self.assertEqual(fields(sb.LocalWidth), members("sb_local_width"))
         keywords = list(inspect.signature(sb.Body.__init__).parameters)[3:]
+        self.assertEqual(keywords.pop(), "dt")
         self.assertEqual(keywords, members("sb_body_params"))
         self.assertEqual(sorted(face.header.choices["SB_GOALS_GATHER"]), ["adjoint", "gather"])
         for name in bodies.CHOICES:
@@ -540,6 +544,94 @@ class Threads(unittest.TestCase):
         for thread in threads:
             thread.join()
         self.assertEqual(found, [mesh.vertices.tobytes()] * 4)
+
+
+class Simulate(unittest.TestCase):
+    """A simulation in one call, other libraries' meshes, and pictures."""
+
+    HOW = {"w": 2, "gravity": (0, -9.81, 0)}
+
+    def test_it_is_what_steps_make(self):
+        mesh = sb.Mesh.shape("beam")
+        motion = sb.simulate(mesh, particles=300, steps=25, every=10, pins=range(9), dt=0.004, **self.HOW)
+        self.assertEqual(motion.times.tolist(), [0, 0.04, 0.08, 0.1])
+        with sb.Body(sb.Voxels(mesh, particles=300), mesh, h=0.004, **self.HOW) as body:
+            body.hold(range(9))
+            for frame, steps in enumerate((0, 10, 10, 5)):
+                body.step(steps)
+                self.assertEqual(motion.surface[frame].tobytes(), body.surface().tobytes())
+                self.assertEqual(motion.particles[frame].tobytes(), body.positions().tobytes())
+            self.assertIs(motion.triangles[0], motion.triangles[-1])
+            self.assertEqual(motion.triangles[0].tobytes(), body.surface_triangles().tobytes())
+            self.assertEqual(repr(body), f"<Body: {body.particle_count} particles, 25 steps, 0.1 s>")
+        self.assertEqual(repr(body), "<Body: closed>")
+        self.assertEqual(repr(motion), f"<Motion: 4 frames, 0.1 s, {motion.counts.particles} particles>")
+        self.assertEqual(repr(mesh), "<Mesh: 546 vertices, 1088 triangles, watertight>")
+
+    def test_pins_of_all_kinds_are_the_same(self):
+        mesh = sb.Mesh.shape("beam")
+
+        def end(pins):
+            return sb.simulate(mesh, particles=300, steps=5, pins=pins, **self.HOW).surface[-1].tobytes()
+
+        rest = sb.Voxels(mesh, particles=300).particles()
+        mask = rest[:, 0] < rest[:, 0].min() + 0.05
+        self.assertEqual(len({end(mask), end(np.flatnonzero(mask)), end(lambda x: x[:, 0] < rest[:, 0].min() + 0.05)}), 1)
+        self.assertNotEqual(end(None), end(mask))
+        for wrong in ([], mask[1:], lambda x: x[:, 0] > 9):
+            with self.assertRaisesRegex(sb.UsageError, "'pins'"):
+                end(wrong)
+        for wrong in ({"every": 0}, {"steps": -1}):
+            with self.assertRaisesRegex(sb.UsageError, "'every'"):
+                sb.simulate(mesh, **wrong)
+
+    def test_meshes_of_other_libraries(self):
+        mesh = sb.Mesh.shape("penguin")
+        x, t = mesh.vertices, mesh.triangles
+        kinds = (types.SimpleNamespace(vertices=x, faces=t), types.SimpleNamespace(vertices=x.tolist(), triangles=t.tolist()),
+                 types.SimpleNamespace(points=x, cells_dict={"triangle": t, "line": t[:, :2]}))
+        for other in kinds:
+            self.assertEqual(sb.Mesh(other).triangles.tobytes(), t.tobytes())
+        for cells in ({"triangle": t, "quad": t}, {"line": t}):
+            with self.assertRaisesRegex(sb.UsageError, "it has cells of .*: triangles alone are wanted"):
+                sb.Mesh(types.SimpleNamespace(points=x, cells_dict=cells))
+        with self.assertRaisesRegex(sb.UsageError, "a int is no mesh"):
+            sb.Mesh(3)
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "penguin.off")
+            rows = [" ".join(map(repr, row)) for row in x.tolist()] + [f"3 {a} {b} {c}" for a, b, c in t.tolist()]
+            path.write_text(f"OFF\n{len(x)} {len(t)} 0\n" + "\n".join(rows), encoding="ascii")
+            self.assertEqual(sb.load(path).vertices.tobytes(), x.tobytes())
+            motions = [sb.simulate(given, particles=300, steps=1) for given in (path, kinds[0], mesh)]
+        self.assertEqual(len({motion.surface[-1].tobytes() for motion in motions}), 1)
+
+    def test_the_step_has_two_names_and_every_engine_a_precision(self):
+        with self.assertRaisesRegex(sb.UsageError, "'h' and 'dt' are both"):
+            block(2, 2, 2, h=0.01, dt=0.01)
+        with block(2, 2, 2, engine="brute", dt=0.02) as body:
+            body.step()
+            self.assertEqual(body.counts().time, 0.02)
+
+    def test_progress_is_told(self):
+        with unittest.mock.patch.dict(sys.modules, {"tqdm": None, "tqdm.auto": None}), \
+                contextlib.redirect_stderr(io.StringIO()) as said:
+            sb.simulate(sb.Mesh.shape("beam"), particles=100, steps=20, progress=True)
+        self.assertEqual(said.getvalue(), "\rframe 1 of 2\rframe 2 of 2\n")
+
+    def test_pictures(self):
+        pyvista = unittest.mock.MagicMock()
+        with beam() as body, unittest.mock.patch.dict(sys.modules, {"pyvista": pyvista}):
+            self.assertIs(body.plot(), pyvista.Plotter())
+            self.assertEqual(pyvista.make_tri_mesh.call_args.args[0].tobytes(), body.surface().tobytes())
+        if not importlib.util.find_spec("matplotlib"):
+            self.skipTest("no matplotlib")
+        import matplotlib
+
+        matplotlib.use("agg")
+        motion = sb.simulate(sb.Mesh.shape("beam"), particles=300, steps=10)
+        with unittest.mock.patch.dict(sys.modules, {"pyvista": None}):
+            drawn = motion.plot().collections[0]
+        self.assertEqual(len(drawn._vec[0]), 3 * len(motion.triangles[-1]))
 
 
 if __name__ == "__main__":

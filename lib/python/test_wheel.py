@@ -51,10 +51,16 @@ class Wheel(unittest.TestCase):
             raise AssertionError(ran.stderr)
         return ran.stdout
 
-    def test_the_readmes_example_draws(self):
-        example = re.search(r"```python\n(.*?)```", (HERE / "README.md").read_text(encoding="utf-8"), re.DOTALL)[1]
-        self.python("-c", example + "assert min(heights) < heights[-1] < 0.1")
-        self.assertGreater((self.folder / "sag.png").stat().st_size, 5000)
+    def test_the_readmes_examples_run(self):
+        bend, compare, cut = re.findall(r"```python\n(import.*?)```", (HERE / "README.md").read_text(encoding="utf-8"),
+                                        re.DOTALL)
+        self.python("-c", bend + "assert min(heights) < heights[-1] < 0.1")
+        sags = [float(line.split()[-2]) for line in self.python("-c", compare).splitlines()]
+        self.assertEqual(len(sags), 4)
+        self.assertTrue(sags[0] > sags[1] > sags[2] > 0, sags)
+        self.assertIn("30 steps, 0.3 s> 2 pieces", self.python("-c", cut))
+        for picture in ("sag.png", "cut.png"):
+            self.assertGreater((self.folder / picture).stat().st_size, 5000)
 
     def test_its_library_is_within_and_has_the_same_bits(self):
         whole = subprocess.run([sys.executable, "-c", STATE], capture_output=True, text=True, check=True,

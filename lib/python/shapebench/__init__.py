@@ -4,10 +4,11 @@ Qin 2009).
 
     import shapebench as sb
 
-    mesh = sb.Mesh.shape("penguin")
-    voxels = sb.Voxels(mesh, particles=2000)
-    with sb.Body(voxels, mesh, gravity=(0, -9.81, 0)) as body:
-        body.hold(body.select_box(*feet))
+    mesh = sb.load("my.obj")  # or sb.Mesh.shape("penguin")
+    motion = sb.simulate(mesh, w=3, gravity=(0, -9.81, 0), pins=lambda rest: rest[:, 1] < 0.1, steps=100)
+    motion.plot()
+
+    with sb.Body(sb.Voxels(mesh, particles=2000), mesh, engine="octree") as body:  # step by step
         body.step(100)
         print(body.surface())
 
@@ -21,7 +22,10 @@ from .body import (Blade, Body, Counts, Criterion, Detail, Handle, LocalWidth, M
                    ShellParams, engines, pose)
 from .face import Error, InputError, UsageError, version as __version__
 from .geometry import Mesh, MeshFacts, VoxelFacts, Voxels, shapes
+from .simulate import Motion, simulate
+
+load = Mesh.load
 
 __all__ = ["Blade", "Body", "Counts", "Criterion", "Detail", "Error", "Handle", "InputError", "LocalWidth", "Mesh",
-           "MeshFacts", "MeshlessParams", "Obstacle", "OctreeParams", "ShellParams", "UsageError", "VoxelFacts", "Voxels",
-           "__version__", "engines", "export", "pose", "results", "shapes"]
+           "MeshFacts", "MeshlessParams", "Motion", "Obstacle", "OctreeParams", "ShellParams", "UsageError", "VoxelFacts",
+           "Voxels", "__version__", "engines", "export", "load", "pose", "results", "shapes", "simulate"]

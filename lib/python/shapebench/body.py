@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import face
 from .geometry import Made, Mesh, Voxels
+from .picture import draw
 
 Doubles = NDArray[np.float64]
 Numbers = NDArray[np.int64]
@@ -198,12 +199,12 @@ class Body(Made):
 
     What is None is the library's default, which is said here. O(particles), up to a few microseconds each.
 
-        engine             "fastlsm"; "octree", and in double precision "brute", "meshless", "shell"
-        precision          "single" (twice as fast); "double"
+        engine             "fastlsm"; "octree", and in double precision alone "brute", "meshless", "shell"
+        precision          "single" (twice as fast) where the engine has it; "double"
         w                  2; half-width of FastLSM's regions in cells, 1 to 31: larger is stiffer
         threads            0: OpenMP's number, at most the cores of affinity and container's quota; any number gives
                            the same bits
-        h                  0.01; time step, s
+        h                  0.01; time step, s; dt is the same
         gravity            (0, 0, 0)
         damping            0; of regions' motion relative to rigid, 0 to 1 (fastlsm eq. 14)
         damping_every      1; n: in every n-th step
@@ -238,7 +239,12 @@ class Body(Made):
                  collide_instances: Optional[bool] = None, collide_friction: Optional[float] = None,
                  instances: Optional[int] = None, pose: Optional[ArrayLike] = None, mass: Optional[ArrayLike] = None,
                  octree: Optional[OctreeParams] = None, meshless: Optional[MeshlessParams] = None,
-                 shell: Optional[ShellParams] = None) -> None:
+                 shell: Optional[ShellParams] = None, dt: Optional[float] = None) -> None:
+        if dt is not None and h is not None:
+            raise face.UsageError("'h' and 'dt' are both the time step: give one of them")
+        h = h if dt is None else dt
+        if precision is None and engine in ("brute", "meshless", "shell"):
+            precision = "double"
         given = [("engine", _engine(engine)), ("precision", precision), ("w", w), ("threads", threads), ("h", h),
                  ("gravity", gravity), ("damping", damping), ("damping_every", damping_every), ("cuttable", cuttable),
                  ("strain_limit", strain_limit), ("summation", summation), ("polar", polar), ("layout", layout),
@@ -253,6 +259,13 @@ class Body(Made):
         self._lock = threading.RLock()
         self._sizes: Optional[Counts] = None  # as long as nothing has changed them
         self._take("sb_body_create", voxels._handle, surface._handle if surface else None, ctypes.byref(params))
+
+    def __repr__(self) -> str:
+        if self._handle is None:
+            return "<Body: closed>"
+        counts = self.counts()
+        bodies = f"{counts.instances} bodies, " if counts.instances > 1 else ""
+        return f"<Body: {bodies}{counts.particles} particles, {counts.steps} steps, {counts.time:g} s>"
 
     def __enter__(self) -> "Body":
         return self
@@ -490,6 +503,11 @@ class Body(Made):
     def surface_rest(self) -> Doubles:
         """[vertices, 3] of one instance at rest, before any pose: for textures, and for what cuts have added."""
         return self._read("sb_body_read_surface_rest", None, np.float64, lambda: self._size("surface_vertices"), 3)
+
+    def plot(self, ax: Any = None) -> Any:
+        """A picture of the first instance's surface with y up: by PyVista where it is installed, else by matplotlib, in
+        the axes `ax` where they are given. Returns the plotter, or the axes."""
+        return draw(self.surface()[:self._size("surface_vertices")], self.surface_triangles(), ax)
 
 
 class Part:

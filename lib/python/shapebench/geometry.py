@@ -72,14 +72,30 @@ class Made:
         self._end.atexit = False  # the system takes it all back then
 
 
+def _arrays_of(mesh: Any) -> Tuple[Any, Any]:
+    """Vertices and triangles of another library's mesh, by its names for them."""
+    for points, corners in (("vertices", "faces"), ("vertices", "triangles"), ("points", "cells_dict")):
+        if hasattr(mesh, points) and hasattr(mesh, corners):
+            found = getattr(mesh, corners)
+            if corners == "cells_dict":  # points and lines bound nothing
+                if set(found) - {"vertex", "line"} != {"triangle"}:
+                    raise face.UsageError(f"it has cells of {', '.join(sorted(found))}: triangles alone are wanted")
+                found = found["triangle"]
+            return np.asarray(getattr(mesh, points)), np.asarray(found)
+    raise face.UsageError(f"a {type(mesh).__name__} is no mesh: give vertices [n, 3] and triangles [m, 3]")
+
+
 class Mesh(Made):
     """Triangles, closed or not: `vertices` [n, 3], and `triangles` [m, 3] that name three of them each,
-    counter-clockwise seen from outside. Equal positions are merged, and triangles that then repeat a vertex dropped, so
+    counter-clockwise seen from outside; or, alone, an object that has them: a mesh of trimesh (vertices, faces), Open3D
+    (vertices, triangles) or meshio (points, cells of triangles). Equal positions are merged, and triangles that then repeat a vertex dropped, so
     numbers may differ from the caller's. It does not change, and may be read by several threads."""
 
     _free = "sb_mesh_free"
 
-    def __init__(self, vertices: ArrayLike, triangles: ArrayLike) -> None:
+    def __init__(self, vertices: Any, triangles: Optional[ArrayLike] = None) -> None:
+        if triangles is None:
+            vertices, triangles = _arrays_of(vertices)
         x = face.array(vertices, np.float64, "vertices", None, 3)
         corners = face.array(triangles, np.int32, "triangles", None, 3)
         self._take("sb_mesh_make", len(x), face.pointer(x), len(corners), face.pointer(corners))
@@ -107,6 +123,10 @@ class Mesh(Made):
         """Counts, bounding box, volume, and what is wrong with it. O(triangles)."""
         values = face.filled("sb_mesh_facts", "sb_mesh_measure", self._handle)
         return MeshFacts(**values)
+
+    def __repr__(self) -> str:
+        facts = self.facts()
+        return f"<Mesh: {facts.vertices} vertices, {facts.triangles} triangles, {'' if facts.watertight else 'not '}watertight>"
 
     @property
     def vertices(self) -> NDArray[np.float64]:
@@ -149,6 +169,10 @@ class Voxels(Made):
         made = cls.__new__(cls)
         made._take("sb_voxels_make", face.pointer(cells), cell, face.pointer(corner), face.pointer(material))
         return made
+
+    def __repr__(self) -> str:
+        facts = self.facts()
+        return f"<Voxels: {facts.material} cells of {facts.cell:g}, {facts.particles} particles>"
 
     def facts(self) -> VoxelFacts:
         """Sizes, and how the inside was found."""
