@@ -15,17 +15,10 @@
 #include "system/process.h"
 #include "system/suggest.h"
 
-static const BenchCommand *const commands[] = {&bench_command_tables,
-                                               &bench_command_claims,
-                                               &bench_command_sweep,
-                                               &bench_command_calibrate,
-                                               &bench_command_regress,
-                                               &bench_command_report,
-                                               &bench_command_kernels,
-                                               &bench_command_simulate,
-                                               &bench_command_info,
-                                               &bench_command_scenes,
-                                               NULL};
+static const BenchCommand *const commands[] = {
+    &bench_command_tables,  &bench_command_claims, &bench_command_sweep,   &bench_command_calibrate,
+    &bench_command_regress, &bench_command_report, &bench_command_kernels, &bench_command_simulate,
+    &bench_command_view,    &bench_command_info,   &bench_command_scenes,  NULL};
 enum { COMMANDS = sizeof commands / sizeof commands[0] - 1 };
 
 static const char help_start[] =
@@ -69,19 +62,6 @@ static const BenchCommand *find_command(const char *name)
     for (int i = 0; i < COMMANDS; i++)
         if (!strcmp(commands[i]->name, name)) return commands[i];
     return NULL;
-}
-
-/* What `scripts/run view` makes needs the sources; the package has one ready. */
-static void no_view(void)
-{
-    char found[PATH_MAX], page[PATH_MAX];
-    SmError error;
-    bool there = !bench_script_find("page.html", found, &error) && realpath(found, page);
-    fprintf(stderr,
-            "shapebench: only scripts/run in the source folder has 'view', which makes the "
-            "page%s%s%s\n",
-            there ? "; a page that is ready is " : "", there ? page : "",
-            there ? ": open it in a browser and drop your mesh on it" : "");
 }
 
 /* Scenes and files are run's arguments. */
@@ -130,7 +110,7 @@ int main(int argc, char **argv)
     const char *name = first < argc ? argv[first] : "tables";
     const BenchCommand *command = find_command(name);
     if (!command) {
-        strcmp(name, "view") ? unknown_command(name) : no_view();
+        unknown_command(name);
         return SM_USAGE;
     }
     if (first >= argc) return run_command(command, 1, none);

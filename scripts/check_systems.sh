@@ -76,7 +76,7 @@ follow_readme() {
         esac
         step "$1" "$column" "$command" inside "$place" "$command"
     done 3< <(commands README.md | grep -vxE "$left_out" &&
-        printf 'shapebench %s\n' --version "tables --scene penguin --repeats 2")
+        printf 'shapebench %s\n' --version "tables --scene penguin --repeats 2" view)
 }
 
 # make_wheel RELEASE: makes and installs the wheel by lib/python/README.md's first commands; runs its first example.

@@ -54,6 +54,7 @@ install(PROGRAMS scripts/build_revision scripts/plot_sweep.py scripts/plot_slice
   scripts/plot_calibration.py scripts/render.py scripts/brute_force.py DESTINATION ${scripts_folder})
 install(FILES scripts/plots.py DESTINATION ${scripts_folder})
 install(FILES results/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/results) # has readers of the files
+install(FILES scripts/view/build.py DESTINATION ${scripts_folder}/view) # puts a scene or a mesh into the page
 install(FILES results/page.html DESTINATION ${scripts_folder}) # reports have it, and pictures on their cards
 install(FILES reference/papers.cfg DESTINATION ${scripts_folder}) # and what the papers print
 install(DIRECTORY results/scenes DESTINATION ${scripts_folder} FILES_MATCHING PATTERN *.webp)

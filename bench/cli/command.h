@@ -85,6 +85,6 @@ int bench_command_run(const BenchCommand *command, int argc, char **argv);
 
 extern const BenchCommand bench_command_scenes, bench_command_info, bench_command_simulate,
     bench_command_tables, bench_command_regress, bench_command_kernels, bench_command_report,
-    bench_command_sweep, bench_command_calibrate, bench_command_claims;
+    bench_command_sweep, bench_command_calibrate, bench_command_claims, bench_command_view;
 
 #endif

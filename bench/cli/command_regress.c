@@ -1,5 +1,4 @@
 #define _GNU_SOURCE
-#include <dirent.h>
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -132,7 +131,7 @@ typedef struct {
     BenchRow *stored; /* rows of the file */
     int stored_count;
     BenchRevision revision;
-    char folder[BENCH_DRAFT_PATH], self[64];
+    char folder[PATH_MAX], self[64];
     BenchRegression found;
     int verdict; /* exit code */
 } Session;
@@ -456,27 +455,6 @@ static SmCode run(Session *session, const BenchMachine *here, SmError *error)
     return code ? code : compare(session, error);
 }
 
-static SmCode make_scratch(Session *session, SmError *error)
-{
-    const char *base = getenv("TMPDIR");
-    if (!base || !base[0] || strlen(base) > 4000) base = "/tmp";
-    snprintf(session->folder, sizeof session->folder, "%.4000s/shapebench_XXXXXX", base);
-    if (mkdtemp(session->folder)) return SM_OK;
-    return bench_draft_fail(session->folder, errno, "", error);
-}
-
-static void remove_scratch(const Session *session)
-{
-    char path[BENCH_DRAFT_PATH];
-    DIR *folder = opendir(session->folder);
-    for (struct dirent *entry; folder && (entry = readdir(folder));) {
-        snprintf(path, sizeof path, "%.3800s/%.255s", session->folder, entry->d_name);
-        if (entry->d_name[0] != '.') unlink(path);
-    }
-    if (folder) closedir(folder);
-    rmdir(session->folder);
-}
-
 static SmCode perform(void *record, int argc, char **argv, SmError *error)
 {
     const Options *options = record;
@@ -488,10 +466,10 @@ static SmCode perform(void *record, int argc, char **argv, SmError *error)
     bench_process_catch();
     bench_progress_start(&session->progress, options->common.quiet);
     SmCode code = bench_draft_reserve(options->output, options->overwrite, error);
-    if (!code) code = make_scratch(session, error);
+    if (!code) code = bench_scratch_make(session->folder, error);
     if (!code) {
         code = run(session, &here, error);
-        remove_scratch(session);
+        bench_scratch_remove(session->folder);
     }
     bench_ab_free(&session->all);
     bench_rows_free(session->stored, session->stored_count);

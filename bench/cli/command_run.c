@@ -287,10 +287,7 @@ static SmCode load(const Options *options, BenchScene *scene, Loaded *loaded, Sm
 {
     *loaded = (Loaded){.of_points = false};
     const char *name = options->scene;
-    size_t length = strlen(name);
-    bool file = length > 4 && !strcmp(name + length - 4, ".cfg");
-    bool other = strchr(name, '.') || strchr(name, '/') || !strncmp(name, "shape:", 6);
-    if (file || !other) {
+    if (bench_scene_named(name)) {
         SmCode code = bench_scene_find(name, scene, error);
         if (code) return code;
         const BenchSubstitutes *chosen = &options->chosen.substitutes;
@@ -303,7 +300,7 @@ static SmCode load(const Options *options, BenchScene *scene, Loaded *loaded, Sm
     if (options->chosen.substitutes.count)
         return sm_fail(error, SM_USAGE, "--mesh goes with a scene, and %.100s is a mesh itself",
                        name);
-    if (length >= BENCH_PATH)
+    if (strlen(name) >= BENCH_PATH)
         return sm_fail(error, SM_INPUT, "%.100s...: the path is too long", name);
     const char *chosen = options->chosen.engine;
     const BenchEngine *engine = bench_engine(chosen ? chosen : "");

@@ -76,7 +76,7 @@ TEST(mistyped_words_get_a_suggestion)
         {"report --threads 2 a.h5", 2, "unrecognized option '--threads'"},
         {"penguin", 2, "unknown command 'penguin'; did you mean 'run penguin'?"},
         {"tiny.cfg", 2, "did you mean 'run tiny.cfg'?"},
-        {"view two.obj", 2, "only scripts/run in the source folder has 'view'"},
+        {"view pengiun", 2, "did you mean 'penguin'? See 'shapebench view --help'"},
     };
     make_mistakes(cases, sizeof cases / sizeof cases[0]);
 }
@@ -179,6 +179,10 @@ TEST(mistakes_of_other_commands_are_too)
         {"info --particles 9", 2, "which MESH?"},
         {"info missing.obj", 3, "missing.obj"},
         {"info --format xml a.obj", 2, "'xml' is not one of text, json"},
+        {"view missing.obj", 3, "missing.obj: no such file"},
+        {"view noise.obj", 3, "noise.obj"},
+        {"view two.obj -o tiny.cfg", 4, "tiny.cfg: it is there; choose another name, or give"},
+        {"view two.obj -o no/such/view.html", 4, "no/such/view.html"},
         {"scenes no-such", 2, "'no-such' is not a built-in scene"},
         {"scenes pengiun", 2, "did you mean 'penguin'? See"},
         {"claims --claim stabel", 2, "did you mean 'stable'? See"},
@@ -325,6 +329,34 @@ TEST(a_mesh_alone_can_be_run)
     run("run block.obj --engine brute --particles 100 --frames 1 --no-output", &result);
     assert_int_equal(result.code, 0);
     assert_false(there("block.vtkhdf"));
+}
+
+/* What the page opens; a mesh that it has no reader for goes in as OBJ. */
+TEST(a_page_carries_a_scene_or_a_mesh)
+{
+    static const struct {
+        const char *what, *text;
+    } cases[] = {{"tiny.cfg", "\"scene\": \"mesh = "},
+                 {"penguin", "One penguin, 150 particles"},
+                 {"two.obj", "\"scene\": \"\", \"mesh\": [{\"name\": \"two.obj\", \"gzip\": \""},
+                 {"shape:block", "\"mesh\": [{\"name\": \"block.obj\", \"gzip\": \""}};
+    static char page[1 << 23];
+    Result result;
+    if (access("/usr/bin/python3", X_OK)) skip();
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char words[64];
+        snprintf(words, sizeof words, "view %s --overwrite", cases[i].what);
+        run(words, &result);
+        if (result.code) fail_msg("%s: %s", cases[i].what, result.err);
+        assert_string_equal(result.out, "wrote view.html: open it in a browser\n");
+        FILE *file = fopen(path_in("view.html"), "r");
+        assert_non_null(file);
+        page[fread(page, 1, sizeof page - 1, file)] = '\0';
+        fclose(file);
+        if (!strstr(page, cases[i].text)) fail_msg("%s is not in it", cases[i].what);
+    }
+    run("view penguin", &result);
+    assert_int_equal(result.code, 4);
 }
 
 TEST(tables_measure_a_scene)

@@ -275,6 +275,13 @@ const char *bench_scene_text(const char *name, size_t *size)
     return NULL;
 }
 
+bool bench_scene_named(const char *name_or_path)
+{
+    size_t length = strlen(name_or_path);
+    bool file = length > 4 && !strcmp(name_or_path + length - 4, ".cfg");
+    return file || (!strpbrk(name_or_path, "./") && strncmp(name_or_path, "shape:", 6) != 0);
+}
+
 SmCode bench_scene_find(const char *name_or_path, BenchScene *scene, SmError *error)
 {
     size_t size, length = strlen(name_or_path);

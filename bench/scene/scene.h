@@ -145,6 +145,9 @@ void bench_scene_said(const BenchScene *scene, size_t size, char *text);
 /* Text of a built-in scene's file (and its size, unless NULL), or NULL. */
 const char *bench_scene_text(const char *name, size_t *size);
 
+/* Is it a scene's name or file, by its letters? Anything else is a mesh or points. */
+bool bench_scene_named(const char *name_or_path);
+
 /* Reads a scene file, or finds a built-in scene by name. Errors name file and line. */
 SmCode bench_scene_read(const char *path, BenchScene *scene, SmError *error);
 SmCode bench_scene_find(const char *name_or_path, BenchScene *scene, SmError *error);

@@ -1,11 +1,13 @@
 #define _GNU_SOURCE
 #include "process.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -160,4 +162,25 @@ SmCode bench_script_find(const char *name, char path[PATH_MAX], SmError *error)
     if (!access(path, R_OK)) return SM_OK;
     return sm_fail(error, SM_INPUT,
                    "%.300s is missing: install shapebench again, or keep its sources", path);
+}
+
+SmCode bench_scratch_make(char folder[PATH_MAX], SmError *error)
+{
+    const char *base = getenv("TMPDIR");
+    if (!base || !base[0] || strlen(base) > 4000) base = "/tmp";
+    snprintf(folder, PATH_MAX, "%.4000s/shapebench_XXXXXX", base);
+    if (mkdtemp(folder)) return SM_OK;
+    return sm_fail(error, SM_OUTPUT, "no folder can be made in %.300s: %s", base, strerror(errno));
+}
+
+void bench_scratch_remove(const char *folder)
+{
+    char path[PATH_MAX];
+    DIR *all = opendir(folder);
+    for (struct dirent *entry; all && (entry = readdir(all));) {
+        snprintf(path, sizeof path, "%.3800s/%.255s", folder, entry->d_name);
+        if (entry->d_name[0] != '.') unlink(path);
+    }
+    if (all) closedir(all);
+    rmdir(folder);
 }

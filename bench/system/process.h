@@ -37,6 +37,11 @@ SmCode bench_process_run(const BenchProcess *process, BenchProcessEnd *end, SmEr
  * blank; cut to `size`. Returns whether there is one; `line` is empty if not. */
 bool bench_process_last_line(const char *path, const char *words, size_t size, char *line);
 
+/* A new folder for files of this run, where TMPDIR says or in /tmp. SM_OUTPUT. The caller removes
+ * it with the files that are in it. */
+SmCode bench_scratch_make(char folder[PATH_MAX], SmError *error);
+void bench_scratch_remove(const char *folder);
+
 /* The running program; false, and "": it is not known. Leaves room as the next does. */
 bool bench_program_path(char path[PATH_MAX]);
 

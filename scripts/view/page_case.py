@@ -29,7 +29,7 @@ SIDES = ("fastlsm", "octree")
 
 def make_page(page, *what):
     """Makes this clone's page as a user does; where its packages are missing, the test is skipped."""
-    made = subprocess.run([HERE / "view", *what, "-o", page], stdin=subprocess.DEVNULL,
+    made = subprocess.run([HERE / "view", *what, "-o", page, "--overwrite"], stdin=subprocess.DEVNULL,
                           env={**os.environ, "SHAPEBENCH_PAGE_OF_CLONE": "1"})
     if made.returncode == 3:
         raise unittest.SkipTest("what the page is built with is not here")

@@ -164,18 +164,23 @@ class Meshes(PageCase):
         """What `view` is given a mesh or a scene with a mesh file opens with it; others are refused."""
         with tempfile.TemporaryDirectory() as folder:
             files = {"mine.OFF": OFF, "mine.cfg": b'particles = 500;\nmesh = "mine.OFF";\n',
-                     "lost.cfg": b'particles = 500;\nmesh = "lost.obj";\n', "mine.dae": b"", "bad.ply": b"ply",
+                     "lost.cfg": b'particles = 500;\nmesh = "lost.obj";\n', "mine.dae": b"", "bad.ply": b"ply", "none.stl": b"",
                      "mine.gltf": CASES["gltf-beside-below.gltf"].data, **CASES["gltf-beside-below.gltf"].beside}
             pathlib.Path(folder, "sub").mkdir()
             for name, data in files.items():
                 pathlib.Path(folder, name).write_bytes(data)
             page = pathlib.Path(folder, "page.html")
-            for name, part in (("mine.OFF", "dropped"), ("mine.gltf", "dropped"), ("mine.cfg", "particles = 500"),
-                               ("bad.ply", "shape:hand")):
+            opened = [("mine.OFF", "dropped"), ("mine.gltf", "dropped"), ("mine.cfg", "particles = 500")]
+            refused = [("lost.cfg", "lost.obj"), ("mine.dae", "cannot open it"), ("none.stl", "an empty one")]
+            if (HERE.parents[1] / "build" / "shapebench").exists():  # which reads it first
+                refused.append(("bad.ply", "bad.ply: "))
+            else:
+                opened.append(("bad.ply", "shape:hand"))
+            for name, part in opened:
                 make_page(page, pathlib.Path(folder, name))
                 self.visit(page, part, "bad.ply: " if name == "bad.ply" else "")
-            for name, part in (("lost.cfg", "lost.obj"), ("mine.dae", "cannot open it")):
-                ran = subprocess.run([HERE / "view", pathlib.Path(folder, name), "-o", page],
+            for name, part in refused:
+                ran = subprocess.run([HERE / "view", pathlib.Path(folder, name), "-o", page, "--overwrite"],
                                      stderr=subprocess.PIPE, text=True, check=False)
                 self.assertEqual(ran.returncode, 3, ran.stderr)
                 self.assertIn(part, ran.stderr)
