@@ -26,7 +26,7 @@ version=$("$build/shapebench" --version | sed -n '1s/^shapebench //p')
 for file in bin/shapebench include/shapebench.h lib/libshapebench.so lib/libshapebench.so."$version" lib/libshapebench.a \
     lib/pkgconfig/shapebench.pc lib/cmake/shapebench/shapebenchConfig.cmake share/bash-completion/completions/shapebench \
     share/zsh/vendor-completions/_shapebench share/shapebench/report/main.py share/shapebench/page.html \
-    share/doc/shapebench/copyright share/doc/shapebench/CHANGELOG.md; do
+    share/shapebench/view/build.py share/doc/shapebench/copyright share/doc/shapebench/CHANGELOG.md; do
     [ -s "$root/usr/$file" ] || fail "$file is not in it"
 done
 if command -v help2man >/dev/null; then
@@ -56,8 +56,8 @@ for program in "$root/usr/bin" "$build"; do
 done >"$folder/hashes"
 [ "$(sort -u "$folder/hashes" | wc -l) $(wc -l <"$folder/hashes")" = "1 2" ] || fail "it runs differently"
 
-page=$({ "$root/usr/bin/shapebench" view 2>&1 || true; } | sed -n 's/.*a page that is ready is \(.*\): open it.*/\1/p')
-[ -s "$page" ] || fail "view does not say where the page is: $page"
+"$root/usr/bin/shapebench" view penguin --quiet -o "$folder/view.html" && grep -qF 'One penguin' "$folder/view.html" ||
+    fail "view makes no page"
 
 sed -n '/^#include <shapebench.h>/,/^```/{/^```/!p}' "$here/../lib/README.md" >"$folder/program.c"
 cat >"$folder/CMakeLists.txt" <<'PROJECT'

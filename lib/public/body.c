@@ -50,28 +50,24 @@ int sb_engine_available(int engine)
 
 /* ---- creation */
 
-void sb_body_params_init(sb_body_params *params, size_t size)
+void sb_body_params_init(sb_body_params *params)
 {
-    static const sb_body_params defaults = {.w = 2, .h = 0.01, .damping_every = 1, .instances = 1};
-    sm_give_defaults(&defaults, sizeof defaults, params, size);
+    *params = (sb_body_params){.w = 2, .h = 0.01, .damping_every = 1, .instances = 1};
 }
 
-void sb_octree_params_init(sb_octree_params *params, size_t size)
+void sb_octree_params_init(sb_octree_params *params)
 {
-    static const sb_octree_params defaults;
-    sm_give_defaults(&defaults, sizeof defaults, params, size);
+    *params = (sb_octree_params){0};
 }
 
-void sb_meshless_params_init(sb_meshless_params *params, size_t size)
+void sb_meshless_params_init(sb_meshless_params *params)
 {
-    static const sb_meshless_params defaults = {.young = 1e5, .poisson = 0.3, .density = 1000};
-    sm_give_defaults(&defaults, sizeof defaults, params, size);
+    *params = (sb_meshless_params){.young = 1e5, .poisson = 0.3, .density = 1000};
 }
 
-void sb_shell_params_init(sb_shell_params *params, size_t size)
+void sb_shell_params_init(sb_shell_params *params)
 {
-    static const sb_shell_params defaults = {.young = 1e5, .poisson = 0.3, .density = 1000};
-    sm_give_defaults(&defaults, sizeof defaults, params, size);
+    *params = (sb_shell_params){.young = 1e5, .poisson = 0.3, .density = 1000};
 }
 
 /* Refuses an engine that is not there, or that does not do what is asked. */
@@ -187,9 +183,8 @@ static int take_widths(const sb_octree_params *p, OctOptions *to, sb_error *erro
 
 static int take_octree(const sb_octree_params *from, OctOptions *to, sb_error *error)
 {
-    sb_octree_params p = {0};
-    int code = from ? sm_take_params(from, &p, sizeof p, "sb_octree_params", error) : SB_OK;
-    if (!code) code = sm_check_range(p.levels, 0, OCT_MAX_LEVELS, "levels", error);
+    const sb_octree_params p = from ? *from : (sb_octree_params){0};
+    int code = sm_check_range(p.levels, 0, OCT_MAX_LEVELS, "levels", error);
     if (!code) code = sm_check_range((double)p.nodes, 0, 1e9, "nodes", error);
     if (!code) code = sm_check_range((double)p.bases, 0, 1e9, "bases", error);
     for (int d = 0; d < 3 && !code; d++)
@@ -249,16 +244,15 @@ static int take_meshless(const sb_meshless_params *from, const sb_mesh *surface,
                          RefMeshlessOptions *to, sb_error *error)
 {
     sb_meshless_params p;
-    sb_meshless_params_init(&p, sizeof p);
-    int code = from ? sm_take_params(from, &p, sizeof p, "sb_meshless_params", error) : SB_OK;
-    if (code) return code;
+    sb_meshless_params_init(&p);
+    if (from) p = *from;
     *to = (RefMeshlessOptions){.mesh = &surface->mesh,
                                .points = p.points,
                                .nodes = p.nodes,
                                .modes = p.modes,
                                .material = {p.young, p.poisson, p.density},
                                .stiffness_damping = p.stiffness_damping};
-    code = check_material(&to->material, p.stiffness_damping, p.nodes, error);
+    int code = check_material(&to->material, p.stiffness_damping, p.nodes, error);
     if (!code && p.modes) code = sm_check_range(p.modes, 7, 1000, "modes", error);
     if (!code && p.points)
         code = sm_check_range((double)p.points, REF_LEAST_POINTS, REF_MOST_POINTS, "points", error);
@@ -280,11 +274,9 @@ static int check_pressure(const RefMeshlessOptions *shell, double h, double cell
 static int take_shell(const sb_body_params *body, double cell, const sb_mesh *surface,
                       RefMeshlessOptions *to, sb_error *error)
 {
-    const sb_shell_params *from = body->shell;
     sb_shell_params p;
-    sb_shell_params_init(&p, sizeof p);
-    int code = from ? sm_take_params(from, &p, sizeof p, "sb_shell_params", error) : SB_OK;
-    if (code) return code;
+    sb_shell_params_init(&p);
+    if (body->shell) p = *body->shell;
     *to = (RefMeshlessOptions){.mesh = &surface->mesh,
                                .nodes = p.nodes,
                                .thickness = p.thickness,
@@ -295,7 +287,7 @@ static int take_shell(const sb_body_params *body, double cell, const sb_mesh *su
                                .pulse = p.pulse,
                                .material = {p.young, p.poisson, p.density},
                                .stiffness_damping = p.stiffness_damping};
-    code = check_material(&to->material, p.stiffness_damping, p.nodes, error);
+    int code = check_material(&to->material, p.stiffness_damping, p.nodes, error);
     if (!code) code = sm_check_range(p.thickness, 0, 1e30, "thickness", error);
     if (!code) code = sm_check_range(p.covers, 0, MOST_COVERS, "covers", error);
     if (!code) code = sm_check_range(p.strength, 0, 1e30, "strength", error);
@@ -365,19 +357,16 @@ static void complete(sb_body *body, const sb_voxels *voxels, const sb_mesh *surf
 int sb_body_create(const sb_voxels *voxels, const sb_mesh *surface, const sb_body_params *params,
                    sb_body **body, sb_error *error)
 {
-    sb_body_params p;
     OctOptions octree;
     RefMeshlessOptions meshless;
     SmError why;
-    int code = sm_check_given(body, "body", error);
-    if (code) return code;
-    *body = NULL;
-    sb_body_params_init(&p, sizeof p);
-    code = sm_check_handle(voxels, SB_IS_VOXELS, error);
-    if (!code && surface) code = sm_check_handle(surface, SB_IS_MESH, error);
-    if (!code) code = sm_take_params(params, &p, sizeof p, "sb_body_params", error);
+    int code = sm_begin(body, "body", error);
+    if (!code) code = sm_check_given(voxels, "voxels", error);
+    if (!code) code = sm_check_given(params, "params", error);
     if (!code && sm_isa_wanted(&why)) code = sm_refuse(error, SB_USAGE, "%s", why.text);
-    if (!code) code = check_engine(&p, error);
+    if (code) return code;
+    sb_body_params p = *params;
+    code = check_engine(&p, error);
     if (!code) code = check_choices(&p, error);
     if (!code) code = check_sizes(&p, &voxels->voxels, error);
     if (!code) code = take_own(&p, voxels->voxels.cell, surface, &octree, &meshless, error);
@@ -386,11 +375,7 @@ int sb_body_create(const sb_voxels *voxels, const sb_mesh *surface, const sb_bod
     const SmEngineType *type = engines[p.engine].type[p.precision];
     SmEngineParams inner = engine_params(&p, type, &octree, &meshless);
     sb_body *made = sm_alloc(1, sizeof *made);
-    *made = (sb_body){.kind = SB_IS_BODY,
-                      .type = type,
-                      .h = p.h,
-                      .threads = p.threads,
-                      .instances = inner.instances};
+    *made = (sb_body){.type = type, .h = p.h, .threads = p.threads, .instances = inner.instances};
     made->bytes = -sm_heap_used();
     SmCode failed = type->create(&voxels->voxels, &inner, &made->engine, &why);
     made->bytes += sm_heap_used();
@@ -407,7 +392,7 @@ int sb_body_create(const sb_voxels *voxels, const sb_mesh *surface, const sb_bod
 
 void sb_body_free(sb_body *body)
 {
-    if (sm_check_handle(body, SB_IS_BODY, NULL)) return;
+    if (!body) return;
     body->type->destroy(body->engine);
     sm_skin_free(&body->skin);
     sm_voxels_free(&body->voxels);
@@ -415,7 +400,6 @@ void sb_body_free(sb_body *body)
     for (int i = 0; i < body->blade_count; i++) sm_blade_free(&body->blade[i].blade);
     for (int i = 0; i < body->detail_count; i++) oct_refinement_free(&body->detail[i]);
     sm_free_all(body->handle, body->obstacle, body->blade, body->detail, body->x0);
-    body->kind = 0;
     free(body);
 }
 
@@ -471,7 +455,7 @@ static int check_speed(const sb_body *body, sb_error *error)
 
 int sb_body_step(sb_body *body, int64_t steps, sb_error *error)
 {
-    int code = sm_check_handle(body, SB_IS_BODY, error);
+    int code = sm_check_given(body, "body", error);
     if (!code && steps < 0)
         code = sm_refuse(error, SB_USAGE, "'steps' is %lld: it is 0 or more", (long long)steps);
     if (code) return code;
@@ -483,30 +467,29 @@ int sb_body_step(sb_body *body, int64_t steps, sb_error *error)
     return code ? code : sm_done(SM_OK, NULL, error);
 }
 
-int sb_body_count(const sb_body *body, sb_body_counts *counts, size_t size, sb_error *error)
+int sb_body_count(const sb_body *body, sb_body_counts *counts, sb_error *error)
 {
     SmCounts from;
-    int code = sm_check_handle(body, SB_IS_BODY, error);
+    int code = sm_check_given(body, "body", error);
     if (!code) code = sm_check_given(counts, "counts", error);
     if (code) return code;
     body->type->count(body->engine, &from);
-    sb_body_counts all = {.particles = from.particles,
-                          .instances = body->instances,
-                          .steps = body->steps,
-                          .time = (double)body->steps * body->h,
-                          .regions = from.regions,
-                          .links = from.links,
-                          .broken = from.broken,
-                          .contacts = from.contacts,
-                          .bytes = body->bytes,
-                          .build_seconds = from.build_seconds,
-                          .summation_nodes = from.summation_nodes,
-                          .cut_triangles = sm_skin_cut_triangles(&body->skin),
-                          .surface_vertices = body->skin.surface.vertex_count,
-                          .surface_triangles = body->skin.surface.triangle_count,
-                          .surface_incomplete = body->skin.incomplete,
-                          .stopped = from.stopped};
-    sm_give(&all, sizeof all, counts, size);
+    *counts = (sb_body_counts){.particles = from.particles,
+                               .instances = body->instances,
+                               .steps = body->steps,
+                               .time = (double)body->steps * body->h,
+                               .regions = from.regions,
+                               .links = from.links,
+                               .broken = from.broken,
+                               .contacts = from.contacts,
+                               .bytes = body->bytes,
+                               .build_seconds = from.build_seconds,
+                               .summation_nodes = from.summation_nodes,
+                               .cut_triangles = sm_skin_cut_triangles(&body->skin),
+                               .surface_vertices = body->skin.surface.vertex_count,
+                               .surface_triangles = body->skin.surface.triangle_count,
+                               .surface_incomplete = body->skin.incomplete,
+                               .stopped = from.stopped};
     return sm_done(SM_OK, NULL, error);
 }
 
@@ -521,7 +504,7 @@ static int check_has(const sb_body *body, bool has, const char *lacks, sb_error 
 
 int sb_body_read(sb_body *body, int field, double *values, int64_t room, sb_error *error)
 {
-    int code = sm_check_handle(body, SB_IS_BODY, error);
+    int code = sm_check_given(body, "body", error);
     if (!code) code = sm_check_range(field, SB_REST, SB_GOAL, "field", error);
     if (!code && field == SB_GOAL)
         code = check_has(body, body->type->goals, "matches no shapes: it has no goals", error);
@@ -534,7 +517,7 @@ int sb_body_read(sb_body *body, int field, double *values, int64_t room, sb_erro
 
 int sb_body_write(sb_body *body, int field, const double *values, int64_t count, sb_error *error)
 {
-    int code = sm_check_handle(body, SB_IS_BODY, error);
+    int code = sm_check_given(body, "body", error);
     if (!code)
         code = check_has(body, body->type->set,
                          "moves nodes that carry particles, which cannot be put elsewhere: use "
@@ -588,7 +571,7 @@ static int check_impulses(const sb_body *body, int64_t count, const int64_t *par
 int sb_body_push(sb_body *body, int64_t count, const int64_t *particle, const double *impulse,
                  sb_error *error)
 {
-    int code = sm_check_handle(body, SB_IS_BODY, error);
+    int code = sm_check_given(body, "body", error);
     if (!code) code = check_particles(body, count, particle, error);
     if (!code && count > 0) code = check_impulses(body, count, particle, impulse, error);
     if (code) return code;
@@ -598,7 +581,7 @@ int sb_body_push(sb_body *body, int64_t count, const int64_t *particle, const do
 
 int sb_body_read_masses(sb_body *body, double *mass, int64_t room, sb_error *error)
 {
-    int code = sm_check_handle(body, SB_IS_BODY, error);
+    int code = sm_check_given(body, "body", error);
     if (!code) code = sm_check_array(mass, room, body->particles / body->instances, "mass", error);
     if (code) return code;
     body->type->masses(body->engine, mass);
@@ -608,7 +591,7 @@ int sb_body_read_masses(sb_body *body, double *mass, int64_t room, sb_error *err
 int sb_body_read_region(sb_body *body, int64_t particle, int64_t *member, int64_t room,
                         int64_t *count, sb_error *error)
 {
-    int code = sm_check_handle(body, SB_IS_BODY, error);
+    int code = sm_check_given(body, "body", error);
     if (!code)
         code = check_has(body, body->type->region,
                          "matches no shapes: it has no regions of particles", error);
@@ -629,7 +612,7 @@ static int check_plastic(bool plastic, sb_error *error)
 
 int sb_body_read_shapes(sb_body *body, double *shape, int64_t room, sb_error *error)
 {
-    int code = sm_check_handle(body, SB_IS_BODY, error);
+    int code = sm_check_given(body, "body", error);
     if (!code) code = sm_check_array(shape, room, body->particles, "shape", error);
     if (code) return code;
     return check_plastic(
@@ -638,7 +621,7 @@ int sb_body_read_shapes(sb_body *body, double *shape, int64_t room, sb_error *er
 
 int sb_body_write_shapes(sb_body *body, const double *shape, int64_t count, sb_error *error)
 {
-    int code = sm_check_handle(body, SB_IS_BODY, error);
+    int code = sm_check_given(body, "body", error);
     if (!code && count != body->particles)
         code = sm_refuse(error, SB_USAGE, "'count' is %lld, and the body has %ld particles",
                          (long long)count, body->particles);
@@ -673,7 +656,7 @@ static void select_particles(sb_body *body, const double low[3], const double hi
 int sb_body_select_box(sb_body *body, const double low[3], const double high[3], int64_t *particle,
                        int64_t room, int64_t *count, sb_error *error)
 {
-    int code = sm_check_handle(body, SB_IS_BODY, error);
+    int code = sm_check_given(body, "body", error);
     if (!code) code = sm_check_finite(low, 3, INFINITY, "low", error);
     if (!code) code = sm_check_finite(high, 3, INFINITY, "high", error);
     if (!code) code = sm_check_list(particle, room, count, "particle", error);
@@ -685,7 +668,7 @@ int sb_body_select_box(sb_body *body, const double low[3], const double high[3],
 int sb_body_select_ball(sb_body *body, const double centre[3], double radius, int64_t *particle,
                         int64_t room, int64_t *count, sb_error *error)
 {
-    int code = sm_check_handle(body, SB_IS_BODY, error);
+    int code = sm_check_given(body, "body", error);
     if (!code) code = sm_check_finite(centre, 3, 1e30, "centre", error);
     if (!code) code = sm_check_range(radius, 0, INFINITY, "radius", error);
     if (!code) code = sm_check_list(particle, room, count, "particle", error);
@@ -716,7 +699,7 @@ static int check_unheld(const sb_body *body, int64_t count, const int64_t *parti
 int sb_body_add_handle(sb_body *body, int64_t count, const int64_t *particle, int *handle,
                        sb_error *error)
 {
-    int code = sm_check_handle(body, SB_IS_BODY, error);
+    int code = sm_check_given(body, "body", error);
     if (!code) code = sm_check_given(handle, "handle", error);
     if (!code) code = check_particles(body, count, particle, error);
     if (!code && count == 0) code = sm_refuse(error, SB_USAGE, "a handle of no particles");
@@ -734,7 +717,7 @@ int sb_body_add_handle(sb_body *body, int64_t count, const int64_t *particle, in
 
 static int find_handle(sb_body *body, int handle, sb_error *error)
 {
-    int code = sm_check_handle(body, SB_IS_BODY, error);
+    int code = sm_check_given(body, "body", error);
     if (code) return code;
     if (handle >= 0 && handle < body->handle_count && body->handle[handle].particle) return SB_OK;
     return sm_refuse(error, SB_USAGE, "there is no handle %d", handle);
@@ -783,7 +766,7 @@ static int add_obstacle(sb_body *body, const SmObstacle *o, int *obstacle, sb_er
 
 static int check_place(sb_body *body, const double *a, const double *b, sb_error *error)
 {
-    int code = sm_check_handle(body, SB_IS_BODY, error);
+    int code = sm_check_given(body, "body", error);
     if (!code) code = sm_check_finite(a, 3, 1e30, "place", error);
     return code ? code : sm_check_finite(b, 3, 1e30, "place", error);
 }
@@ -833,7 +816,7 @@ int sb_body_add_capsule(sb_body *body, const double a[3], const double b[3], dou
 
 int sb_body_remove_obstacle(sb_body *body, int obstacle, sb_error *error)
 {
-    int code = sm_check_handle(body, SB_IS_BODY, error);
+    int code = sm_check_given(body, "body", error);
     if (code) return code;
     if (obstacle < 0 || obstacle >= body->obstacle_count || body->obstacle[obstacle].gone)
         return sm_refuse(error, SB_USAGE, "there is no obstacle %d", obstacle);

@@ -99,7 +99,7 @@ static int change_octree(sb_body *body, void (*change)(Batch *batch, void *of), 
 
 static int check_cuttable(const sb_body *body, sb_error *error)
 {
-    int code = sm_check_handle(body, SB_IS_BODY, error);
+    int code = sm_check_given(body, "body", error);
     if (code || body->skin.octree || (body->x0 && body->type->cut)) return code;
     return sm_refuse(error, SB_USAGE,
                      "the body was not made to be cut: create it with 'cuttable' 1");
@@ -269,7 +269,7 @@ int sb_body_lift_blade(sb_body *body, int blade, sb_error *error)
 
 int sb_body_read_pieces(sb_body *body, int *piece, int64_t room, int64_t *count, sb_error *error)
 {
-    int code = sm_check_handle(body, SB_IS_BODY, error);
+    int code = sm_check_given(body, "body", error);
     if (!code) code = sm_check_given(count, "count", error);
     if (code) return code;
     long own = body->particles / body->instances;
@@ -294,7 +294,7 @@ int sb_body_read_pieces(sb_body *body, int *piece, int64_t room, int64_t *count,
 
 static int check_octree(const sb_body *body, sb_error *error)
 {
-    int code = sm_check_handle(body, SB_IS_BODY, error);
+    int code = sm_check_given(body, "body", error);
     if (code || body->skin.octree) return code;
     return sm_refuse(error, SB_USAGE, "a body of %s has no cells to split: use SB_OCTREE",
                      body->type->name);
@@ -401,7 +401,7 @@ int sb_body_read_levels(sb_body *body, int *level, int64_t room, sb_error *error
 int sb_body_read_contacts(sb_body *body, sb_contact *contact, int64_t room, int64_t *count,
                           sb_error *error)
 {
-    int code = sm_check_handle(body, SB_IS_BODY, error);
+    int code = sm_check_given(body, "body", error);
     if (!code) code = sm_check_list(contact, room, count, "contact", error);
     if (code) return code;
     if (!body->type->contacts)
@@ -422,7 +422,7 @@ int sb_body_read_contacts(sb_body *body, sb_contact *contact, int64_t room, int6
 
 static int check_surface(const sb_body *body, sb_error *error)
 {
-    int code = sm_check_handle(body, SB_IS_BODY, error);
+    int code = sm_check_given(body, "body", error);
     if (code || body->skin.surface.vertex_count > 0) return code;
     return sm_refuse(error, SB_USAGE, "the body carries no surface: give sb_body_create() a mesh");
 }

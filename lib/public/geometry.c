@@ -17,10 +17,9 @@ _Static_assert((int)SB_USAGE == SM_USAGE && (int)SB_INPUT == SM_INPUT &&
 
 /* ---- meshes */
 
-void sb_load_params_init(sb_load_params *params, size_t size)
+void sb_load_params_init(sb_load_params *params)
 {
-    static const sb_load_params defaults;
-    sm_give_defaults(&defaults, sizeof defaults, params, size);
+    *params = (sb_load_params){0};
 }
 
 static int finish_mesh(SmCode code, const SmError *why, SmMesh *mesh, sb_mesh **result,
@@ -28,27 +27,18 @@ static int finish_mesh(SmCode code, const SmError *why, SmMesh *mesh, sb_mesh **
 {
     if (code) return sm_done(code, why, error);
     *result = sm_alloc(1, sizeof **result);
-    **result = (sb_mesh){.kind = SB_IS_MESH, .mesh = *mesh};
+    **result = (sb_mesh){.mesh = *mesh};
     return sm_done(SM_OK, why, error);
-}
-
-/* *result is NULL from here on. */
-static int begin(void *result, const char *name, sb_error *error)
-{
-    int code = sm_check_given(result, name, error);
-    if (!code) memset(result, 0, sizeof(void *));
-    return code;
 }
 
 int sb_mesh_load(const char *path, const sb_load_params *params, sb_mesh **mesh, sb_error *error)
 {
-    sb_load_params p = {0};
+    const sb_load_params p = params ? *params : (sb_load_params){0};
     SmMesh made;
     SmMeshLeftOut left_out;
     SmError why;
-    int code = begin(mesh, "mesh", error);
+    int code = sm_begin(mesh, "mesh", error);
     if (!code) code = sm_check_given(path, "path", error);
-    if (!code && params) code = sm_take_params(params, &p, sizeof p, "sb_load_params", error);
     if (!code) code = sm_check_range(p.seconds, 0, 1e6, "seconds", error);
     if (!code) code = sm_check_range(p.megabytes, 0, 1e6, "megabytes", error);
     if (code) return code;
@@ -63,7 +53,7 @@ int sb_mesh_make(int64_t vertices, const double *position, int64_t triangles, co
                  sb_mesh **mesh, sb_error *error)
 {
     SmError why;
-    int code = begin(mesh, "mesh", error);
+    int code = sm_begin(mesh, "mesh", error);
     if (!code) code = sm_check_range((double)vertices, 1, INT_MAX, "vertices", error);
     if (!code) code = sm_check_range((double)triangles, 1, INT_MAX, "triangles", error);
     if (!code) code = sm_check_given(position, "position", error);
@@ -80,7 +70,7 @@ int sb_mesh_shape(const char *name, sb_mesh **mesh, sb_error *error)
 {
     SmMesh made;
     SmError why;
-    int code = begin(mesh, "mesh", error);
+    int code = sm_begin(mesh, "mesh", error);
     if (!code) code = sm_check_given(name, "name", error);
     if (code) return code;
     SmCode inner = sm_shape_mesh(name, &made, &why);
@@ -94,33 +84,32 @@ const char *sb_shape_name(int number)
     return number >= 0 && number < count ? shapes[number].name : NULL;
 }
 
-int sb_mesh_measure(const sb_mesh *mesh, sb_mesh_facts *facts, size_t size, sb_error *error)
+int sb_mesh_measure(const sb_mesh *mesh, sb_mesh_facts *facts, sb_error *error)
 {
-    int code = sm_check_handle(mesh, SB_IS_MESH, error);
+    int code = sm_check_given(mesh, "mesh", error);
     if (!code) code = sm_check_given(facts, "facts", error);
     if (code) return code;
     SmMeshInfo info = sm_mesh_info(&mesh->mesh);
     const SmMeshLeftOut *out = &mesh->left_out;
-    sb_mesh_facts all = {.vertices = info.vertices,
-                         .triangles = info.triangles,
-                         .components = info.components,
-                         .open_edges = info.open_edges,
-                         .nonmanifold_edges = info.nonmanifold_edges,
-                         .flipped_edges = info.flipped_edges,
-                         .degenerate = info.degenerate,
-                         .duplicates = info.duplicates,
-                         .watertight = info.watertight,
-                         .volume = info.volume,
-                         .left_out = out->points + out->lines + out->curves + out->scenes};
-    memcpy(all.low, info.low, sizeof all.low);
-    memcpy(all.high, info.high, sizeof all.high);
-    sm_give(&all, sizeof all, facts, size);
+    *facts = (sb_mesh_facts){.vertices = info.vertices,
+                             .triangles = info.triangles,
+                             .components = info.components,
+                             .open_edges = info.open_edges,
+                             .nonmanifold_edges = info.nonmanifold_edges,
+                             .flipped_edges = info.flipped_edges,
+                             .degenerate = info.degenerate,
+                             .duplicates = info.duplicates,
+                             .watertight = info.watertight,
+                             .volume = info.volume,
+                             .left_out = out->points + out->lines + out->curves + out->scenes};
+    memcpy(facts->low, info.low, sizeof facts->low);
+    memcpy(facts->high, info.high, sizeof facts->high);
     return sm_done(SM_OK, NULL, error);
 }
 
 int sb_mesh_read_vertices(const sb_mesh *mesh, double *position, int64_t room, sb_error *error)
 {
-    int code = sm_check_handle(mesh, SB_IS_MESH, error);
+    int code = sm_check_given(mesh, "mesh", error);
     if (code) return code;
     return sm_give_array(mesh->mesh.position, mesh->mesh.vertex_count, sizeof *mesh->mesh.position,
                          position, room, "position", error);
@@ -128,7 +117,7 @@ int sb_mesh_read_vertices(const sb_mesh *mesh, double *position, int64_t room, s
 
 int sb_mesh_read_triangles(const sb_mesh *mesh, int *triangle, int64_t room, sb_error *error)
 {
-    int code = sm_check_handle(mesh, SB_IS_MESH, error);
+    int code = sm_check_given(mesh, "mesh", error);
     if (code) return code;
     return sm_give_array(mesh->mesh.triangle, mesh->mesh.triangle_count,
                          sizeof *mesh->mesh.triangle, triangle, room, "triangle", error);
@@ -136,28 +125,27 @@ int sb_mesh_read_triangles(const sb_mesh *mesh, int *triangle, int64_t room, sb_
 
 void sb_mesh_free(sb_mesh *mesh)
 {
-    if (sm_check_handle(mesh, SB_IS_MESH, NULL)) return;
+    if (!mesh) return;
     sm_mesh_free(&mesh->mesh);
-    mesh->kind = 0;
     free(mesh);
 }
 
 /* ---- voxels */
 
-void sb_voxel_params_init(sb_voxel_params *params, size_t size)
+void sb_voxel_params_init(sb_voxel_params *params)
 {
-    static const sb_voxel_params defaults = {.fill = SB_SOLID};
-    sm_give_defaults(&defaults, sizeof defaults, params, size);
+    *params = (sb_voxel_params){.fill = SB_SOLID};
 }
 
 int sb_voxels_of_mesh(const sb_mesh *mesh, const sb_voxel_params *params, sb_voxels **voxels,
                       sb_error *error)
 {
-    sb_voxel_params p = {0};
-    int code = begin(voxels, "voxels", error);
-    if (!code) code = sm_check_handle(mesh, SB_IS_MESH, error);
-    if (!code) code = sm_take_params(params, &p, sizeof p, "sb_voxel_params", error);
-    if (!code) code = sm_check_range(p.fill, SB_SOLID, SB_SHELL, "fill", error);
+    int code = sm_begin(voxels, "voxels", error);
+    if (!code) code = sm_check_given(mesh, "mesh", error);
+    if (!code) code = sm_check_given(params, "params", error);
+    if (code) return code;
+    const sb_voxel_params p = *params;
+    code = sm_check_range(p.fill, SB_SOLID, SB_SHELL, "fill", error);
     if (!code && p.particles == 0 && !(p.cell > 0))
         code = sm_refuse(error, SB_USAGE,
                          "'particles' is 0 and 'cell' is %g: give one of them, above 0", p.cell);
@@ -166,7 +154,6 @@ int sb_voxels_of_mesh(const sb_mesh *mesh, const sb_voxel_params *params, sb_vox
                            p.fewer != 0};
     SmError why;
     sb_voxels *made = sm_alloc(1, sizeof *made);
-    made->kind = SB_IS_VOXELS;
     SmCode failed =
         sm_voxelise_report(&mesh->mesh, &inner, "mesh", &made->voxels, &made->report, &why);
     if (failed)
@@ -210,7 +197,7 @@ static void take_cells(SmVoxels *v, const uint8_t *filled)
 int sb_voxels_make(const int cells[3], double cell, const double origin[3], const uint8_t *filled,
                    sb_voxels **voxels, sb_error *error)
 {
-    int code = begin(voxels, "voxels", error);
+    int code = sm_begin(voxels, "voxels", error);
     if (!code) code = check_lattice(cells, cell, origin, error);
     if (code) return code;
     SmVoxels v;
@@ -228,32 +215,31 @@ int sb_voxels_make(const int cells[3], double cell, const double origin[3], cons
         return code;
     }
     *voxels = sm_alloc(1, sizeof **voxels);
-    **voxels = (sb_voxels){.kind = SB_IS_VOXELS, .voxels = v};
+    **voxels = (sb_voxels){.voxels = v};
     return sm_done(SM_OK, NULL, error);
 }
 
-int sb_voxels_measure(const sb_voxels *voxels, sb_voxel_facts *facts, size_t size, sb_error *error)
+int sb_voxels_measure(const sb_voxels *voxels, sb_voxel_facts *facts, sb_error *error)
 {
-    int code = sm_check_handle(voxels, SB_IS_VOXELS, error);
+    int code = sm_check_given(voxels, "voxels", error);
     if (!code) code = sm_check_given(facts, "facts", error);
     if (code) return code;
     const SmVoxels *v = &voxels->voxels;
-    sb_voxel_facts all = {.inside = (int)voxels->report.inside,
-                          .cell = v->cell,
-                          .material = v->cell_count,
-                          .particles = v->particle_count,
-                          .shell_cells = voxels->report.shell_cells,
-                          .flooded_cells = voxels->report.flood_cells,
-                          .voted_cells = voxels->report.vote_cells};
-    memcpy(all.cells, v->size, sizeof all.cells);
-    memcpy(all.origin, v->origin, sizeof all.origin);
-    sm_give(&all, sizeof all, facts, size);
+    *facts = (sb_voxel_facts){.inside = (int)voxels->report.inside,
+                              .cell = v->cell,
+                              .material = v->cell_count,
+                              .particles = v->particle_count,
+                              .shell_cells = voxels->report.shell_cells,
+                              .flooded_cells = voxels->report.flood_cells,
+                              .voted_cells = voxels->report.vote_cells};
+    memcpy(facts->cells, v->size, sizeof facts->cells);
+    memcpy(facts->origin, v->origin, sizeof facts->origin);
     return sm_done(SM_OK, NULL, error);
 }
 
 int sb_voxels_read_cells(const sb_voxels *voxels, uint8_t *filled, int64_t room, sb_error *error)
 {
-    int code = sm_check_handle(voxels, SB_IS_VOXELS, error);
+    int code = sm_check_given(voxels, "voxels", error);
     if (code) return code;
     const SmVoxels *v = &voxels->voxels;
     code = sm_check_array(filled, room, cells_of(v), "filled", error);
@@ -269,7 +255,7 @@ int sb_voxels_read_cells(const sb_voxels *voxels, uint8_t *filled, int64_t room,
 int sb_voxels_read_particles(const sb_voxels *voxels, double *position, int64_t room,
                              sb_error *error)
 {
-    int code = sm_check_handle(voxels, SB_IS_VOXELS, error);
+    int code = sm_check_given(voxels, "voxels", error);
     if (code) return code;
     const SmVoxels *v = &voxels->voxels;
     code = sm_check_array(position, room, v->particle_count, "position", error);
@@ -281,7 +267,7 @@ int sb_voxels_read_particles(const sb_voxels *voxels, double *position, int64_t 
 int sb_voxels_weigh(const sb_voxels *voxels, double density, double *mass, int64_t room,
                     sb_error *error)
 {
-    int code = sm_check_handle(voxels, SB_IS_VOXELS, error);
+    int code = sm_check_given(voxels, "voxels", error);
     if (!code) code = sm_check_array(mass, room, voxels->voxels.particle_count, "mass", error);
     if (!code && !(density > 0 && isfinite(density)))
         code = sm_refuse(error, SB_USAGE, "'density' is %g: it is above 0", density);
@@ -292,8 +278,7 @@ int sb_voxels_weigh(const sb_voxels *voxels, double density, double *mass, int64
 
 void sb_voxels_free(sb_voxels *voxels)
 {
-    if (sm_check_handle(voxels, SB_IS_VOXELS, NULL)) return;
+    if (!voxels) return;
     sm_voxels_free(&voxels->voxels);
-    voxels->kind = 0;
     free(voxels);
 }

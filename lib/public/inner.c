@@ -41,17 +41,11 @@ int sm_check_given(const void *pointer, const char *name, sb_error *error)
     return sm_refuse(error, SB_USAGE, "'%s' is NULL: it must be given", name);
 }
 
-int sm_check_handle(const void *handle, SbKind kind, sb_error *error)
+int sm_begin(void *result, const char *name, sb_error *error)
 {
-    const char *name = kind == SB_IS_MESH     ? "sb_mesh"
-                       : kind == SB_IS_VOXELS ? "sb_voxels"
-                                              : "sb_body";
-    if (!handle) return sm_refuse(error, SB_USAGE, "the %s is NULL: create one first", name);
-    SbKind found;
-    memcpy(&found, handle, sizeof found);
-    if (found == kind) return SB_OK;
-    return sm_refuse(error, SB_USAGE, "what is given as %s is none: a handle of another kind?",
-                     name);
+    int code = sm_check_given(result, name, error);
+    if (!code) memset(result, 0, sizeof(void *));
+    return code;
 }
 
 int sm_check_finite(const double *value, int64_t count, double most, const char *name,
@@ -78,40 +72,6 @@ int sm_check_range(double value, double least, double most, const char *name, sb
 {
     if (value >= least && value <= most) return SB_OK;
     return sm_refuse(error, SB_USAGE, "'%s' is %g: it is from %g to %g", name, value, least, most);
-}
-
-enum { MOST_PARAMS = 1 << 16 }; /* bytes: no struct will have so many */
-
-int sm_take_params(const void *from, void *to, size_t size, const char *name, sb_error *error)
-{
-    size_t given;
-    int code = sm_check_given(from, name, error);
-    if (code) return code;
-    memcpy(&given, from, sizeof given);
-    if (given < sizeof given || given > MOST_PARAMS)
-        return sm_refuse(error, SB_USAGE, "'%s' has a size of %zu: call %s_init() first", name,
-                         given, name);
-    for (size_t i = size; i < given; i++)
-        if (((const unsigned char *)from)[i])
-            return sm_refuse(error, SB_USAGE,
-                             "'%s' asks for what this library, version %s, does not have: link a "
-                             "newer one",
-                             name, sb_version_text());
-    memcpy(to, from, given < size ? given : size);
-    return SB_OK;
-}
-
-void sm_give(const void *from, size_t size, void *to, size_t room)
-{
-    memcpy(to, from, room < size ? room : size);
-    if (room > size) memset((char *)to + size, 0, room - size);
-}
-
-void sm_give_defaults(const void *from, size_t size, void *to, size_t room)
-{
-    if (!to || room < sizeof room) return;
-    sm_give(from, size, to, room);
-    memcpy(to, &room, sizeof room);
 }
 
 int sm_give_array(const void *from, int64_t count, size_t size, void *to, int64_t room,

@@ -9,17 +9,12 @@
 #include "shapebench.h"
 #include "skin.h"
 
-/* What a handle must begin with: one of another kind is noticed before it is used. */
-typedef enum { SB_IS_MESH = 0x73624d31, SB_IS_VOXELS = 0x73625631, SB_IS_BODY = 0x73624231 } SbKind;
-
 struct sb_mesh {
-    SbKind kind;
     SmMesh mesh;
     SmMeshLeftOut left_out; /* of its file */
 };
 
 struct sb_voxels {
-    SbKind kind;
     SmVoxels voxels;
     SmVoxelReport report;
 };
@@ -39,7 +34,6 @@ typedef struct {
 #define SB_FAR 1e9 /* cells: farther off, or faster in a step, is a mistake */
 
 struct sb_body {
-    SbKind kind;
     const SmEngineType *type;
     SmEngine *engine;
     long bytes; /* that it took when it was made */
@@ -61,8 +55,9 @@ struct sb_body {
 
 /* Checks of arguments: SB_OK, or SB_USAGE and a line. Arrays may be NULL where nothing is wanted of
  * them; of numbers, NaN is out of every range. */
-int sm_check_handle(const void *handle, SbKind kind, sb_error *error);
 int sm_check_given(const void *pointer, const char *name, sb_error *error);
+/* The same of where a call leaves what it creates: *result is NULL from here on. */
+int sm_begin(void *result, const char *name, sb_error *error);
 int sm_check_finite(const double *value, int64_t count, double most, const char *name,
                     sb_error *error);
 int sm_check_array(const void *array, int64_t room, int64_t wanted, const char *name,
@@ -82,16 +77,8 @@ int sm_done(SmCode code, const SmError *from, sb_error *error);
 int sm_refuse(sb_error *error, int code, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* Copies a caller's struct, whose first member is its size, over `to`, which holds the defaults of
- * a struct of `size`. */
-int sm_take_params(const void *from, void *to, size_t size, const char *name, sb_error *error);
-
 /* Ends a call that gives `count` entries of `size` bytes in an array with room for `room`. */
 int sm_give_array(const void *from, int64_t count, size_t size, void *to, int64_t room,
                   const char *name, sb_error *error);
-
-/* Fills the first `room` bytes of a caller's struct; with defaults its first member is `room`. */
-void sm_give(const void *from, size_t size, void *to, size_t room);
-void sm_give_defaults(const void *from, size_t size, void *to, size_t room);
 
 #endif

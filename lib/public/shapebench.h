@@ -5,9 +5,9 @@
  * body of the voxels, and steps it:
  *
  *     sb_mesh_shape("penguin", &mesh, &error);
- *     sb_voxel_params_init(&how, sizeof how), how.particles = 2000;
+ *     sb_voxel_params_init(&how), how.particles = 2000;
  *     sb_voxels_of_mesh(mesh, &how, &voxels, &error);
- *     sb_body_params_init(&params, sizeof params), params.gravity[1] = -9.81;
+ *     sb_body_params_init(&params), params.gravity[1] = -9.81;
  *     sb_body_create(voxels, mesh, &params, &body, &error);
  *     sb_body_step(body, 100, &error);
  *     sb_body_read(body, SB_POSITION, x, room, &error);
@@ -26,21 +26,16 @@
  * Errors. A function that can fail returns SB_OK, which is 0, or another SB_ code, and takes as its
  * last argument an sb_error for one line of text, which may be NULL. After a failure nothing has
  * changed, unless the function says otherwise, and what was to be created is NULL. NULL for another
- * pointer, numbers that are not finite or out of range, and handles of another kind are errors
- * (SB_USAGE); a handle that was freed is not noticed. Two things end the program: when memory runs
- * out, status 70 and a line that says where; and in debugging, a failed assertion, an error of
- * ours.
+ * pointer, and numbers that are not finite or out of range, are errors (SB_USAGE); a handle that
+ * was freed is not noticed. Two things end the program: when memory runs out, status 70 and a line
+ * that says where; and in debugging, a failed assertion, an error of ours.
  *
  * Threads. There is no global state. Different bodies may be used by different threads at once; one
  * body by one thread at a time. A mesh or voxels may be read by several. A body's work is shared by
  * sb_body_params.threads threads of OpenMP; any number gives the same bits.
  *
- * Versions. A struct that is passed in begins with its size, which its ..._init() sets together
- * with the defaults; one that is filled is passed with its size. So members can be added at the
- * ends of structs, and a program that was compiled with an older header still runs (what arrays
- * hold, sb_contact, sb_criterion and sb_local_width, stays as it is); one that was
- * compiled with a newer header and asks for what the library does not know gets an error. The major
- * version changes when something is taken away.
+ * Versions. Structs, constants and functions stay as they are within a major version; what is added
+ * has names of its own. A program may ask sb_version() which one it has.
  *
  * Costs are given where they are more than O(what is copied).
  *
@@ -99,7 +94,6 @@ int sb_engine_available(int engine);
 /* ---- meshes: triangles, closed or not */
 
 typedef struct {
-    size_t size;
     double seconds;   /* Assimp's limit of time; 0: 20 s, and one more for each MB of the file */
     double megabytes; /* Assimp's limit of memory; 0: 4096 */
 } sb_load_params;
@@ -118,7 +112,7 @@ typedef struct {
     int64_t left_out; /* points, lines, curves and further scenes of its file, which it lacks */
 } sb_mesh_facts;
 
-void sb_load_params_init(sb_load_params *params, size_t size);
+void sb_load_params_init(sb_load_params *params);
 
 /* Reads a mesh file: OBJ, PLY, STL, OFF, glTF or GLB, also compressed (.gz), in double precision;
  * and, where the library has Assimp, its formats, in a child process within the limits (`params`
@@ -139,8 +133,8 @@ int sb_mesh_shape(const char *name, sb_mesh **mesh, sb_error *error);
 /* Names of the procedural models, number 0 and up; NULL past the last. */
 const char *sb_shape_name(int number);
 
-/* Fills the first `size` bytes of `facts`. O(triangles). */
-int sb_mesh_measure(const sb_mesh *mesh, sb_mesh_facts *facts, size_t size, sb_error *error);
+/* Fills `facts`. O(triangles). */
+int sb_mesh_measure(const sb_mesh *mesh, sb_mesh_facts *facts, sb_error *error);
 
 int sb_mesh_read_vertices(const sb_mesh *mesh, double *position, int64_t room, sb_error *error);
 int sb_mesh_read_triangles(const sb_mesh *mesh, int *triangle, int64_t room, sb_error *error);
@@ -153,7 +147,6 @@ void sb_mesh_free(sb_mesh *mesh);
 enum { SB_SOLID, SB_SHELL };
 
 typedef struct {
-    size_t size;
     int fill;          /* SB_SOLID: what a triangle touches and what that encloses; SB_SHELL: only
                         * what a triangle touches */
     double cell;       /* edge of a cell; used if `particles` is 0 */
@@ -182,7 +175,7 @@ typedef struct {
 } sb_voxel_facts;
 
 /* Solid, and no size: one of `cell` and `particles` must be given. */
-void sb_voxel_params_init(sb_voxel_params *params, size_t size);
+void sb_voxel_params_init(sb_voxel_params *params);
 
 /* Voxelises a mesh conservatively: every cell that a triangle touches is material. SB_INPUT: loose
  * triangles without an inside for a solid, or more than 2^31 cells. O(triangles + cells / 64), up
@@ -196,7 +189,7 @@ int sb_voxels_of_mesh(const sb_mesh *mesh, const sb_voxel_params *params, sb_vox
 int sb_voxels_make(const int cells[3], double cell, const double origin[3], const uint8_t *filled,
                    sb_voxels **voxels, sb_error *error);
 
-int sb_voxels_measure(const sb_voxels *voxels, sb_voxel_facts *facts, size_t size, sb_error *error);
+int sb_voxels_measure(const sb_voxels *voxels, sb_voxel_facts *facts, sb_error *error);
 
 /* One byte a cell of the lattice, x fastest: 1 where there is material. */
 int sb_voxels_read_cells(const sb_voxels *voxels, uint8_t *filled, int64_t room, sb_error *error);
@@ -249,9 +242,8 @@ typedef struct {
     double centre[3], radius;
 } sb_local_width;
 
-/* What the octree asks beyond what all engines do. All zero but for `size`: the defaults. */
+/* What the octree asks beyond what all engines do. All zero: the defaults. */
 typedef struct {
-    size_t size;
     int levels;    /* a base cell is 2^levels finest cells wide, 1 to 12; 0: chosen by the size */
     int balance;   /* 1: cells that touch differ by one level at most */
     int64_t nodes; /* wanted simulation nodes; 0: what the criteria give */
@@ -277,7 +269,6 @@ typedef struct {
 /* What the meshless engine asks beyond what all do. Units are the mesh's, kg and s: pascals where
  * it is in metres. Defaults: 1e5, 0.3 and 1000, and else 0. */
 typedef struct {
-    size_t size;
     double young, poisson, density; /* Young's modulus; Poisson's ratio, -0.99 to 0.49 */
     double stiffness_damping;       /* Rayleigh's b, s */
     int64_t points;                 /* on the surface, of which the body is made; 0: 12000, of thin
@@ -295,7 +286,6 @@ typedef struct {
  * call of sb_body_step() in which any grew it has other vertices, and triangles of them. Steps
  * allocate where cracks grow. */
 typedef struct {
-    size_t size;
     double young, poisson, density; /* Young's modulus; Poisson's ratio, -0.99 to 0.49 */
     double stiffness_damping;       /* Rayleigh's b, s */
     int64_t nodes;                  /* wanted; 0: 450 */
@@ -309,7 +299,6 @@ typedef struct {
 } sb_shell_params;
 
 typedef struct {
-    size_t size;
     int engine;    /* SB_FASTLSM, SB_OCTREE, SB_BRUTE, SB_MESHLESS, SB_THIN_SHELL */
     int precision; /* SB_SINGLE (twice as fast) or SB_DOUBLE */
     int w;         /* half-width of FastLSM's regions in cells, 1 to 31: larger is stiffer */
@@ -338,10 +327,10 @@ typedef struct {
 } sb_body_params;
 
 /* FastLSM in single precision, w 2, h 0.01 s, no gravity, one instance, threads 0. */
-void sb_body_params_init(sb_body_params *params, size_t size);
-void sb_octree_params_init(sb_octree_params *params, size_t size);
-void sb_meshless_params_init(sb_meshless_params *params, size_t size);
-void sb_shell_params_init(sb_shell_params *params, size_t size);
+void sb_body_params_init(sb_body_params *params);
+void sb_octree_params_init(sb_octree_params *params);
+void sb_meshless_params_init(sb_meshless_params *params);
+void sb_shell_params_init(sb_shell_params *params);
 
 /* Creates a body, at rest. `surface` is a mesh that it carries, usually that of the voxels, or
  * NULL; a meshless body is made of it, closed, and a shell, of one component, which has no part of
@@ -378,8 +367,8 @@ typedef struct {
     int stopped;            /* 1: a crack of a shell could not be followed: it stands still */
 } sb_body_counts;
 
-/* Fills the first `size` bytes of `counts`. Octree and cuts: numbers change with resampling. */
-int sb_body_count(const sb_body *body, sb_body_counts *counts, size_t size, sb_error *error);
+/* Fills `counts`. Octree and cuts: numbers change with resampling. */
+int sb_body_count(const sb_body *body, sb_body_counts *counts, sb_error *error);
 
 enum { SB_REST, SB_POSITION, SB_VELOCITY, SB_GOAL };
 

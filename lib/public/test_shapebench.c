@@ -49,7 +49,7 @@ static sb_voxels *voxels_of(const sb_mesh *mesh, int64_t particles)
 {
     sb_voxel_params how;
     sb_voxels *voxels;
-    sb_voxel_params_init(&how, sizeof how);
+    sb_voxel_params_init(&how);
     how.particles = particles;
     OK(sb_voxels_of_mesh(mesh, &how, &voxels, NULL));
     return voxels;
@@ -82,7 +82,7 @@ static sb_mesh *box_in(double x, double y, double z)
 static sb_body_params params_of(int engine)
 {
     sb_body_params params;
-    sb_body_params_init(&params, sizeof params);
+    sb_body_params_init(&params);
     params.engine = engine;
     params.gravity[1] = -9.81;
     params.damping = 0.1;
@@ -92,7 +92,7 @@ static sb_body_params params_of(int engine)
 /* Of a body that is soon made. */
 static void small_meshless(sb_meshless_params *meshless)
 {
-    sb_meshless_params_init(meshless, sizeof *meshless);
+    sb_meshless_params_init(meshless);
     meshless->young = 2e5;
     meshless->points = 3000;
     meshless->nodes = 60;
@@ -101,7 +101,7 @@ static void small_meshless(sb_meshless_params *meshless)
 
 static void small_shell(sb_shell_params *shell)
 {
-    sb_shell_params_init(shell, sizeof *shell);
+    sb_shell_params_init(shell);
     shell->young = 2e5;
     shell->nodes = 60;
     shell->thickness = 0.02;
@@ -120,7 +120,7 @@ static sb_body *body_of(const sb_voxels *voxels, const sb_mesh *surface,
 static sb_body_counts counts_of(const sb_body *body)
 {
     sb_body_counts counts;
-    OK(sb_body_count(body, &counts, sizeof counts, NULL));
+    OK(sb_body_count(body, &counts, NULL));
     return counts;
 }
 
@@ -158,7 +158,7 @@ TEST(the_library_says_what_it_is)
 static void compare_meshes(const sb_mesh *mesh, const SmMesh *inner)
 {
     sb_mesh_facts facts;
-    OK(sb_mesh_measure(mesh, &facts, sizeof facts, NULL));
+    OK(sb_mesh_measure(mesh, &facts, NULL));
     SmMeshInfo info = sm_mesh_info(inner);
     assert_int_equal(facts.vertices, inner->vertex_count);
     assert_int_equal(facts.triangles, inner->triangle_count);
@@ -189,7 +189,7 @@ TEST(meshes_are_those_inside)
     sm_mesh_free(&inner);
     sb_mesh_free(mesh);
     sb_load_params limits;
-    sb_load_params_init(&limits, sizeof limits);
+    sb_load_params_init(&limits);
     limits.seconds = 60;
     sb_error error = {0};
     int code = sb_mesh_load(path, &limits, &mesh, &error);
@@ -209,7 +209,7 @@ TEST(voxels_are_those_inside)
     sb_mesh *outer = shape("penguin");
     sb_voxels *voxels = voxels_of(outer, 500), *copy;
     sb_voxel_facts facts;
-    OK(sb_voxels_measure(voxels, &facts, sizeof facts, NULL));
+    OK(sb_voxels_measure(voxels, &facts, NULL));
     assert_int_equal(facts.particles, inner.particle_count);
     assert_int_equal(facts.material, inner.cell_count);
     assert_int_equal(facts.inside, SB_INSIDE_CLOSED);
@@ -230,7 +230,7 @@ TEST(voxels_are_those_inside)
     OK(sb_voxels_make(facts.cells, facts.cell, facts.origin, filled, &copy, NULL));
     for (int64_t c = 0; c < all; c++) material += filled[c];
     assert_int_equal(material, facts.material);
-    OK(sb_voxels_measure(copy, &facts, sizeof facts, NULL));
+    OK(sb_voxels_measure(copy, &facts, NULL));
     assert_int_equal(facts.particles, inner.particle_count);
     sm_mesh_free(&mesh);
     sm_voxels_free(&inner);
@@ -630,7 +630,7 @@ TEST(what_is_written_is_read)
     sb_voxels *voxels = block_of(3, 4, 5);
     sb_body_params params = params_of(SB_OCTREE);
     sb_octree_params octree;
-    sb_octree_params_init(&octree, sizeof octree);
+    sb_octree_params_init(&octree);
     octree.levels = 1;
     octree.creep = 20;
     octree.criteria_count = 1;
@@ -692,7 +692,7 @@ static double volume_of(sb_body *body)
     OK(sb_body_read_surface_rest(body, x, counts.surface_vertices, NULL));
     OK(sb_body_read_surface_triangles(body, triangle, counts.surface_triangles, NULL));
     OK(sb_mesh_make(counts.surface_vertices, x, counts.surface_triangles, triangle, &mesh, NULL));
-    OK(sb_mesh_measure(mesh, &facts, sizeof facts, NULL));
+    OK(sb_mesh_measure(mesh, &facts, NULL));
     sb_mesh_free(mesh);
     sm_free_all(x, triangle);
     return facts.volume;
@@ -768,7 +768,7 @@ TEST(details_come_and_go_and_handles_follow)
     sb_voxels *voxels = block_of(8, 8, 8);
     sb_body_params params = params_of(SB_OCTREE);
     sb_octree_params octree;
-    sb_octree_params_init(&octree, sizeof octree);
+    sb_octree_params_init(&octree);
     octree.levels = 2;
     params.octree = &octree;
     sb_body *body = body_of(voxels, NULL, &params);
@@ -864,49 +864,7 @@ TEST(instances_collide_as_in_their_engine)
     sm_voxels_free(&inner);
 }
 
-/* ---- versions, threads, misuse */
-
-TEST(structs_of_other_versions_are_understood)
-{
-    struct {
-        sb_body_params known;
-        double new_member;
-    } newer;
-    struct {
-        size_t size;
-        int engine, precision;
-    } older;
-    sb_error error;
-    sb_voxels *voxels = block_of(2, 2, 2);
-    sb_body *body;
-    sb_body_params_init(&newer.known, sizeof newer);
-    OK(sb_body_create(voxels, NULL, &newer.known, &body, &error));
-    sb_body_free(body);
-    newer.new_member = 1;
-    REFUSED(sb_body_create(voxels, NULL, &newer.known, &body, &error), "newer");
-    assert_null(body);
-    sb_body_params_init((sb_body_params *)&older, sizeof older);
-    older.engine = SB_OCTREE;
-    OK(sb_body_create(voxels, NULL, (sb_body_params *)&older, &body, &error));
-    int64_t particles[2] = {0, -1}; /* counts of an older program: the first member alone */
-    OK(sb_body_count(body, (sb_body_counts *)particles, sizeof particles[0], &error));
-    assert_true(particles[0] > 0 && particles[1] == -1);
-    sb_body_free(body);
-    sb_body_params before_shells;
-    sb_body_params_init(&before_shells, offsetof(sb_body_params, shell));
-    before_shells.shell = (const sb_shell_params *)&before_shells; /* no such member: not read */
-    before_shells.engine = SB_THIN_SHELL;
-    before_shells.precision = SB_DOUBLE;
-    sb_mesh *mesh = shape("block");
-    if (sb_engine_available(SB_THIN_SHELL)) {
-        OK(sb_body_create(voxels, mesh, &before_shells, &body, &error));
-        sb_body_free(body);
-    }
-    sb_mesh_free(mesh);
-    sb_body_params nothing = {0};
-    REFUSED(sb_body_create(voxels, NULL, &nothing, &body, &error), "init");
-    sb_voxels_free(voxels);
-}
+/* ---- threads, misuse */
 
 static void *fall(void *of)
 {
@@ -956,7 +914,7 @@ TEST(misuse_of_meshes_and_voxels_is_refused)
     UNUSABLE(sb_mesh_make(2, corner[0], 1, same, &mesh, &error), "one place");
     REFUSED(sb_mesh_make(-1, corner[0], 1, triangle, &mesh, &error), "vertices");
     REFUSED(sb_mesh_make(INT64_MAX, corner[0], 1, triangle, &mesh, &error), "vertices");
-    REFUSED(sb_mesh_measure(NULL, NULL, 0, &error), "NULL");
+    REFUSED(sb_mesh_measure(NULL, NULL, &error), "NULL");
     sb_mesh_free(NULL);
     sb_voxels_free(NULL);
     sb_body_free(NULL);
@@ -968,18 +926,16 @@ TEST(misuse_of_meshes_and_voxels_is_refused)
     assert_null(voxels);
     mesh = shape("penguin");
     sb_voxel_params how;
-    sb_voxel_params_init(&how, sizeof how);
+    sb_voxel_params_init(&how);
     REFUSED(sb_voxels_of_mesh(mesh, &how, &voxels, &error), "cell");
     how.cell = NAN;
     REFUSED(sb_voxels_of_mesh(mesh, &how, &voxels, &error), "cell");
     how.cell = 1e-12;
     UNUSABLE(sb_voxels_of_mesh(mesh, &how, &voxels, &error), "2^31");
-    REFUSED(sb_voxels_of_mesh((sb_mesh *)&how, &how, &voxels, &error), "sb_mesh");
     REFUSED(sb_mesh_read_vertices(mesh, (double[3]){0}, 1, &error), "room");
     voxels = block_of(2, 2, 2);
     REFUSED(sb_voxels_weigh(voxels, -1, (double[27]){0}, 27, &error), "density");
     REFUSED(sb_voxels_read_particles(voxels, NULL, 27, &error), "NULL");
-    REFUSED(sb_voxels_read_cells((sb_voxels *)mesh, NULL, 0, &error), "another kind");
     sb_voxels_free(voxels);
     sb_mesh_free(mesh);
 }
@@ -993,7 +949,7 @@ TEST(parameters_out_of_range_are_refused)
 #define BAD(code, text, ...)                                                                       \
     do {                                                                                           \
         sb_body_params p = params_of(SB_FASTLSM);                                                  \
-        sb_octree_params_init(&octree, sizeof octree);                                             \
+        sb_octree_params_init(&octree);                                                            \
         __VA_ARGS__;                                                                               \
         refused(sb_body_create(voxels, NULL, &p, &body, &error), code, &error, text);              \
         assert_null(body);                                                                         \
@@ -1101,7 +1057,6 @@ TEST(misuse_of_particles_is_refused)
     double values[243] = {0};
     double *before = read_field(body, SB_POSITION);
     REFUSED(sb_body_step(NULL, 1, &error), "NULL");
-    REFUSED(sb_body_step((sb_body *)voxels, 1, &error), "another kind");
     REFUSED(sb_body_step(body, -1, &error), "steps");
     REFUSED(sb_body_read(body, 4, values, 27, &error), "field");
     REFUSED(sb_body_read(body, SB_REST, values, 26, &error), "room");

@@ -58,7 +58,7 @@ def block(*cells, **how):
 
 
 def members(kind, *without):
-    return [name for name, _ in face.header.struct[kind]._fields_ if name not in ("size", *without)]
+    return [name for name, _ in face.header.struct[kind]._fields_ if name not in without]
 
 
 def fields(kind):

@@ -198,10 +198,10 @@ def choice(name: str, member: str, value: Union[str, int]) -> int:
 
 
 def params(kind: str, given: Iterable[Tuple[str, Any]], choices: dict[str, str]) -> Any:
-    """A struct that begins with its size, with the library's defaults, and in their place what is given and not None.
+    """A struct with the library's defaults, and in their place what is given and not None.
     `choices` has a member of the enum of those that are one. Arrays that it points to live as long as it does."""
     made = header.struct[kind]()
-    getattr(library(), f"{kind}_init")(ctypes.byref(made), ctypes.sizeof(made))
+    getattr(library(), f"{kind}_init")(ctypes.byref(made))
     made.kept = []
     for name, value in given:
         if value is not None:
@@ -229,7 +229,7 @@ def put(struct: Any, name: str, value: Any, choices: dict[str, str]) -> None:
 def filled(kind: str, name: str, handle: Any) -> dict[str, Any]:
     """A struct that the library fills, as a dictionary."""
     made = header.struct[kind]()
-    call(name, handle, ctypes.byref(made), ctypes.sizeof(made))
+    call(name, handle, ctypes.byref(made))
     values = ((field, getattr(made, field)) for field, _ in made._fields_)
     return {field: tuple(value) if isinstance(value, ctypes.Array) else value for field, value in values}
 
