@@ -39,7 +39,7 @@ sources_of(view_sources bench/view/*.c)
 list(FILTER view_sources EXCLUDE REGEX "/store_body\\.c$")
 list(APPEND view_sources bench/engines.c lib/public/skin.c reference/paper.c
   ${CMAKE_BINARY_DIR}/builtin.c ${CMAKE_BINARY_DIR}/papers.c)
-foreach(noun scene/scene scene/scene_settings scene/body scene/memory scene/nearest scene/blades
+foreach(noun scene/scene scene/scene_settings scene/body scene/memory scene/blades
     settings/setting settings/config_file system/suggest system/quote system/remark
     play/runner play/body_group play/carrier play/playback)
   list(APPEND view_sources bench/${noun}.c)

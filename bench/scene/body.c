@@ -11,10 +11,10 @@
 #include "../../lib/shapes/shape.h"
 #include "../../lib/system/file.h"
 #include "../../lib/voxel/voxelise.h"
+#include "../../reference/meshless/surface/cloud.h"
 #include "../../reference/meshless/surface/local_triangles.h"
 #include "../system/remark.h"
 #include "memory.h"
-#include "nearest.h"
 
 static SmCode import(const char *path, SmMesh *mesh, SmError *error)
 {
@@ -204,12 +204,17 @@ static SmCode weigh_vertices(const char *path, BenchBody *body, SmError *error)
     double *given = sm_alloc((size_t)body->mesh.vertex_count, sizeof *given);
     SmCode code = read_masses(path, body->mesh.vertex_count, given, error);
     if (!code) {
-        BenchNearest nearest;
-        bench_nearest_create((const double(*)[3])body->mesh.position, body->mesh.vertex_count,
-                             &nearest);
-        for (long p = 0; p < body->voxels.particle_count; p++)
-            body->mass[p] = given[bench_nearest_find(&nearest, body->x0[p])];
-        bench_nearest_free(&nearest);
+        double(*none)[3] = sm_alloc((size_t)body->mesh.vertex_count, sizeof *none), distance;
+        const RefPoints points = {
+            .count = body->mesh.vertex_count, .position = body->mesh.position, .normal = none};
+        RefCloud cloud;
+        ref_cloud_create(&points, &cloud);
+        for (long p = 0, near; p < body->voxels.particle_count; p++) {
+            ref_cloud_nearest(&cloud, body->x0[p], 1, &near, &distance);
+            body->mass[p] = given[near];
+        }
+        ref_cloud_free(&cloud);
+        free(none);
     }
     free(given);
     return code;

@@ -1,6 +1,4 @@
-/* cloud.h - points in a tree of boxes: the nearest ones, those in a ball, the winding number.
- *
- * bench/scene/nearest.h finds the one nearest point only, without balls or sums. */
+/* cloud.h - points in a tree of boxes: the nearest ones, those in a ball, the winding number. */
 #ifndef REF_CLOUD_H
 #define REF_CLOUD_H
 
