@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../lib/mesh/reader.h"
 #include "../engines.h"
 #include "../scene/scene.h"
 #include "../sweep/recommend.h"
@@ -66,6 +67,16 @@ static const BenchSetting settings[] = {
     {0},
 };
 
+static void check(const struct argp_state *state, void *record)
+{
+    const Options *options = record;
+    const char *word = options->its.common.words ? options->its.common.word[0] : "";
+    bool scene = *word && bench_scene_named(word);
+    if (scene || sm_mesh_readable(word))
+        bench_usage(state, "%s: FILE.h5 alone is shown; --%s %s is measured", word,
+                    scene ? "scene" : "mesh", word);
+}
+
 static const char help[] =
     "Measure an engine, or both, over region widths w and the octree's epsilon: what a step costs, "
     "how stiff it makes a body, and how far it is from exact regions and from full resolution. "
@@ -121,7 +132,7 @@ static const Options defaults = {.range = {"1:8", "0:1:0.1"},
 const BenchCommand bench_command_sweep = {
     .name = "sweep",
     .summary = "cost and quality over w and epsilon; recommend some",
-    .line = {settings, BENCH_TAKES_ALL, "[FILE.h5]", help, .most = 1,
+    .line = {settings, BENCH_TAKES_ALL, "[FILE.h5]", help, check, .most = 1,
              .limit = "One file is shown at a time"},
     .size = sizeof(Options),
     .defaults = &defaults,

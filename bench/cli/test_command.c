@@ -200,6 +200,8 @@ TEST(mistakes_of_other_commands_are_too)
         {"tables --paper octre", 2, "did you mean 'octree'? See"},
         {"claims --paper fastlms", 2, "did you mean 'fastlsm'? See"},
         {"regress --revision HEAD --paper meshles", 2, "did you mean 'meshless'? See"},
+        {"sweep two.obj", 2, "two.obj: FILE.h5 alone is shown; --mesh two.obj is measured"},
+        {"sweep hand", 2, "hand: FILE.h5 alone is shown; --scene hand is measured"},
         {"sweep --engine octre", 2, "did you mean 'octree'? See"},
         {"kernels --only polar-fats", 2, "did you mean 'polar-fast'? See"},
         {"kernels --only scalling", 2, "did you mean 'scaling'? See"},

@@ -169,7 +169,7 @@ export class App {
                 const stages = this.engine.stages(side);
                 this.engine.clearStages(side);
                 return stages;
-            }, soon);
+            }, soon, this.engine.figure(side, 'time'));
         this.panel.show(this.meters);
     }
 

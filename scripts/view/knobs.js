@@ -87,11 +87,13 @@ const longest = (app) => {
 };
 const UNBROKEN = 1e8; // Pa: the end of a slider
 
-// Sliders: `log` ones move by powers of ten; those of an `engine`, or of several, are there where that is. `get` and `set` where it is not the plain setting `key`.
+// Sliders: those that are `first` are seen at once; `log` ones move by powers of ten; those of an `engine`, or of
+// several, are there where that is. `get` and `set` where it is not the plain setting `key`.
 export const SLIDERS = [
-    { key: 'w', label: 'w, half-width of regions', least: 1, most: 8, by: 1, whole: true, start: 2 },
-    { key: 'damping', label: 'Damping', least: 0, most: 1, by: 0.01, start: 0 },
-    { key: 'h', label: 'Time step h, s', least: 0.001, most: 0.03, log: true, start: 0.01 },
+    { key: 'w', first: true, label: 'w, half-width of regions', least: 1, most: 8, by: 1, whole: true, start: 2 },
+    { key: 'epsilon', first: true, engine: 'octree', label: 'Octree: epsilon', least: 0, most: 2, by: 0.05, start: 0.5 },
+    { key: 'damping', first: true, label: 'Damping', least: 0, most: 1, by: 0.01, start: 0 },
+    { key: 'h', first: true, label: 'Time step h, s (shorter: stiffer)', least: 0.001, most: 0.03, log: true, start: 0.01 },
     { key: 'particles', label: 'Particles wanted', least: 100, most: 60000, log: true, whole: true,
         set: (text, value) => {
             const without = removeSetting(removeSetting(text, 'cells'), 'cell');
@@ -104,8 +106,8 @@ export const SLIDERS = [
             const [x, , z] = getNumbers(text, 'gravity') ?? [0, 0, 0];
             return setSetting(text, 'gravity', `[${asReal(x)}, ${value}, ${asReal(z)}]`);
         } },
-    { key: 'meshless.young', engine: ['meshless', 'shell'], label: 'Elastic: Young\u2019s modulus, Pa', least: 1e4,
-        most: 1e8, log: true, start: 1e5 },
+    { key: 'meshless.young', first: true, engine: ['meshless', 'shell'], label: 'Elastic: Young\u2019s modulus, Pa',
+        least: 1e4, most: 1e8, log: true, start: 1e5 },
     { key: 'meshless.thickness', engine: 'shell', label: 'Shell: thickness, share of its length', least: 0.001,
         most: 0.05, log: true, start: 0.01,
         get: (text, app) => getNumber(text, 'meshless.thickness') / longest(app) || undefined,
@@ -116,7 +118,6 @@ export const SLIDERS = [
         most: UNBROKEN, log: true, hint: 'never', otherwise: UNBROKEN,
         set: (text, value) => (value < UNBROKEN ? setSetting(text, 'meshless.strength', value)
             : removeSetting(text, 'meshless.strength')) },
-    { key: 'epsilon', engine: 'octree', label: 'Octree: epsilon', least: 0, most: 2, by: 0.05, start: 0.5 },
     { key: 'octree.levels', engine: 'octree', label: 'Octree: levels', least: 1, most: 6, by: 1, whole: true,
         hint: 'not set: up to 4', otherwise: 4 },
     { key: 'octree.widths', engine: 'octree', label: 'Octree: w of the upper half, edges', least: 0.25, most: 4, by: 0.25,

@@ -9,15 +9,35 @@ import { fromBase64, saveFile, unzip } from 'view/share';
 const FIRST_SCENE = 'hand';
 const $ = (id) => document.getElementById(id);
 
-const WHAT = { [ELASTIC]: ' (elastic body)', [ABSENT]: ' (elastic body, not in this page)' };
+// The menu's groups, by what is beside FastLSM, or else the paper.
+const GROUPS = ['Octree', 'Elastic body', 'Thin shell', 'FastLSM', 'Others'];
+
+function groupOf(text, engine) {
+    const own = getString(text, 'engine');
+    if (engine.elastic(text) === ELASTIC) return 'Elastic body';
+    if (own === 'shell') return 'Thin shell';
+    const paper = { octree: 'Octree', fastlsm: 'FastLSM' };
+    return paper[own] ?? paper[getString(text, 'paper')] ?? 'Others';
+}
+
+// Scenes by their titles; elastic bodies that the page has not got are left out.
+function fillMenu(menu, engine) {
+    menu.append(new Option('(own text)', ''));
+    menu.options[0].disabled = true;
+    for (const label of GROUPS) {
+        const group = Object.assign(document.createElement('optgroup'), { label });
+        for (const name of engine.sceneNames()) {
+            const text = engine.sceneText(name);
+            if (engine.elastic(text) === ABSENT || groupOf(text, engine) !== label) continue;
+            group.append(new Option(getString(text, 'title') ?? name, name));
+        }
+        menu.append(group);
+    }
+}
 
 function wire(app) {
     const { engine } = app;
-    const what = (text) => WHAT[engine.elastic(text)] ?? (getString(text, 'engine') === 'shell' ? ' (shell)' : '');
-    const label = (name) => name + what(engine.sceneText(name));
-    $('scene').append(new Option('(own text)', ''),
-        ...engine.sceneNames().map((name) => new Option(label(name), name, false)));
-    $('scene').options[0].disabled = true;
+    fillMenu($('scene'), engine);
     $('scene').addEventListener('change', () => app.visit(app.engine.sceneText($('scene').value)));
     const does = {
         pause: () => app.pause(app.playing), step: () => app.once(), reset: () => app.reset(),

@@ -1,17 +1,20 @@
 // meter.js - what a side takes of time in this browser, and how its motion went in the last seconds.
 const LEAST_MS = 500; // what a mean is of; without a display so many steps are enough
 const LEAST_STEPS = 50;
+const SHARES_OF = 160; // steps, or ms of them: one step in eight has clocks inside, which tell a tenth of a ms
 const SECONDS = 10;
 
 export class Meter {
     constructor() { this.clear(); }
 
     clear() {
-        Object.assign(this, { stepMs: NaN, frameMs: NaN, shares: [], trace: [] });
+        Object.assign(this, { stepMs: NaN, frameMs: NaN, pace: NaN, shares: [], trace: [], seen: 0 });
         this.begin();
     }
 
-    begin() { Object.assign(this, { steps: 0, frames: 0, stepping: 0, whole: 0, since: performance.now() }); }
+    begin(time = NaN) {
+        Object.assign(this, { steps: 0, frames: 0, stepping: 0, whole: 0, time, since: performance.now() });
+    }
 
     // A frame's steps took `stepping` ms, and with finding and sending the surface `whole`.
     add(steps, stepping, whole) {
@@ -21,16 +24,23 @@ export class Meter {
         this.whole += whole;
     }
 
-    // Takes the means anew when they are of enough; `stages()` are the ms a step of each stage.
-    settle(stages, soon) {
-        const long = performance.now() - this.since > LEAST_MS;
+    // Takes the means anew when they are of enough; `stages()` are the ms a step of each stage; `time` is what
+    // has been simulated, s.
+    settle(stages, soon, time) {
+        const since = performance.now() - this.since;
+        const long = since > LEAST_MS;
         if (!this.steps || !(long || (soon && this.steps >= LEAST_STEPS))) return;
         this.stepMs = this.stepping / this.steps;
         this.frameMs = this.whole / this.frames;
-        const each = stages();
-        const sum = each.reduce((a, b) => a + b, 0);
-        this.shares = each.map((ms) => ms / sum);
-        this.begin();
+        this.pace = 1000 * (time - this.time) / since;
+        this.seen += Math.max(this.steps, this.stepping);
+        if (soon || this.seen >= SHARES_OF) {
+            const each = stages();
+            const sum = each.reduce((a, b) => a + b, 0);
+            this.shares = each.map((ms) => ms / sum);
+            this.seen = 0;
+        }
+        this.begin(time);
     }
 
     // What was at a time of play, in seconds.

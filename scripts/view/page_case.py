@@ -55,6 +55,9 @@ class PageCase(unittest.TestCase):
         cls.driver = open_page()
         cls.ask("shapebench.pause()")
 
+    def setUp(self):
+        self.ask("document.getElementById('more').open = true")  # all knobs
+
     @classmethod
     def ask(cls, body, *values):
         """What the body of an asynchronous function returns, in the page."""

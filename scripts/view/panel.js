@@ -12,7 +12,8 @@ const FIGURES = [
     ['ms a frame: its steps, surface', (m) => m.frameMs],
     ['Particles', 'particles'], ['Regions', 'regions'], ['Links', 'links', ['fastlsm']],
     ['Summation nodes a region', 'summationNodes', ['octree']], ['Contacts', 'contacts', ['fastlsm', 'octree']],
-    ['Pieces', 'pieces', ['shell']], ['Time simulated, s', 'time'], ['Kinetic energy, J', 'kinetic'], ['Momentum, kg·m/s', 'momentum'],
+    ['Pieces', 'pieces', ['shell']], ['Time simulated, s', 'time'], ['Speed, of real time', (m) => m.pace],
+    ['Kinetic energy, J', 'kinetic'], ['Momentum, kg·m/s', 'momentum'],
 ];
 
 function make(tag, values, ...children) {
@@ -108,7 +109,8 @@ export class Panel {
         this.app = app;
         const choices = CHOICES.map((what) => new Choice(this, what));
         this.knobs = [...SLIDERS.map((what) => new Slider(this, what)), ...choices];
-        document.getElementById('knobs').append(...this.knobs.map((knob) => knob.element));
+        for (const knob of this.knobs)
+            document.getElementById(knob.what.first ? 'knobs' : 'more-knobs').append(knob.element);
         this.rows = FIGURES.map(([label]) => this.row('figures', label));
         this.bars = STAGES.map((name) => this.row('stages', name));
         this.box = document.getElementById('text');
