@@ -1,7 +1,7 @@
 // meter.js - what a side takes of time in this browser, and how its motion went in the last seconds.
 const LEAST_MS = 500; // what a mean is of; without a display so many steps are enough
 const LEAST_STEPS = 50;
-const SHARES_OF = 160; // steps, or ms of them: one step in eight has clocks inside, which tell a tenth of a ms
+const SHARES_OF = 20; // ms of steps: every other one has clocks inside, which tell a tenth of a ms
 const SECONDS = 10;
 
 export class Meter {
@@ -33,8 +33,8 @@ export class Meter {
         this.stepMs = this.stepping / this.steps;
         this.frameMs = this.whole / this.frames;
         this.pace = 1000 * (time - this.time) / since;
-        this.seen += Math.max(this.steps, this.stepping);
-        if (soon || this.seen >= SHARES_OF) {
+        this.seen += this.stepping;
+        if (this.seen >= SHARES_OF) {
             const each = stages();
             const sum = each.reduce((a, b) => a + b, 0);
             this.shares = each.map((ms) => ms / sum);
