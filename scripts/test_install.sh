@@ -78,7 +78,8 @@ else
 fi
 
 if /usr/bin/python3 -c 'import numpy' 2>"$prefix/log"; then
-    engines=$(cd "$prefix" && env -u LD_LIBRARY_PATH /usr/bin/python3 -c 'import shapebench; print(*shapebench.engines())')
+    engines=$(cd "$prefix" && env -u LD_LIBRARY_PATH /usr/bin/python3 -c \
+        'import shapebench; print(*shapebench.engines())')
     [[ $engines == "fastlsm octree brute"* ]] || { echo "the module's engines: $engines"; exit 1; }
 else
     echo "no NumPy: not tested from Python"

@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "../../lib/mesh/reader.h"
 #include "../engines.h"
@@ -71,7 +72,9 @@ static void check(const struct argp_state *state, void *record)
 {
     const Options *options = record;
     const char *word = options->its.common.words ? options->its.common.word[0] : "";
-    bool scene = *word && bench_scene_named(word);
+    size_t length = strlen(word);
+    bool file = length > 4 && !strcmp(word + length - 4, ".cfg");
+    bool scene = file || (bench_scene_text(word, NULL) && access(word, F_OK) != 0);
     if (scene || sm_mesh_readable(word))
         bench_usage(state, "%s: FILE.h5 alone is shown; --%s %s is measured", word,
                     scene ? "scene" : "mesh", word);

@@ -4,9 +4,11 @@
 #include <string.h>
 
 #include "../../lib/mesh/reader.h"
+#include "../engines.h"
 #include "../scene/body.h"
 #include "../store/draft.h"
 #include "../system/process.h"
+#include "../system/remark.h"
 #include "command.h"
 
 typedef struct {
@@ -62,6 +64,11 @@ static SmCode take_mesh(const char *path, const SmMesh *mesh, Given *given, SmEr
 static SmCode take_scene(const char *name, const BenchScene *scene, Given *given, SmError *error)
 {
     const char *text = bench_scene_text(name, NULL);
+    bool own = bench_engine(scene->engine)->own & BENCH_OF_ELASTIC;
+    if (own && strcmp(name, "beam-elastic") != 0 && strcmp(name, "balljoint") != 0)
+        bench_remark("%s: the page has the elastic bodies of beam-elastic and balljoint alone; "
+                     "'scripts/run view' of a clone makes one with others",
+                     name);
     bool shape = !strncmp(scene->mesh, "shape:", 6);
     if (!shape) snprintf(given->mesh, sizeof given->mesh, "%s", scene->mesh);
     if (!shape && !sm_mesh_readable(scene->mesh))
@@ -92,18 +99,27 @@ static SmCode take(const char *name, Given *given, SmError *error)
 static SmCode make_page(const Given *given, const char *output, SmError *error)
 {
     char script[PATH_MAX], page[PATH_MAX], log[PATH_MAX], line[256];
+    BenchDraft draft;
     SmCode code = bench_script_find("view/build.py", script, error);
     if (!code && bench_script_find("page.html", page, NULL))
         code = bench_script_find("../results/page.html", page, error);
+    if (!code) code = bench_draft_begin(output, &draft, error);
     if (code) return code;
     snprintf(log, sizeof log, "%.4000s/log", given->folder);
-    const char *const word[] = {"python3", script, page, output, given->text, given->mesh, NULL};
+    const char *const word[] = {"python3", script, page, draft.tmp, given->text, given->mesh, NULL};
     BenchProcess process = {.word = word, .output = log};
-    BenchProcessEnd end;
-    code = bench_process_run(&process, &end, error);
-    if (code || !end.status) return code;
-    bench_process_last_line(log, NULL, sizeof line, line);
-    return sm_fail(error, end.status == SM_OUTPUT ? SM_OUTPUT : SM_INPUT, "%s", line);
+    BenchProcessEnd end = {0};
+    SmError why;
+    if (bench_process_run(&process, &end, &why))
+        code = sm_fail(error, SM_INPUT, "%s; python3 makes the page: install it", why.text);
+    else if (end.status)
+        code = sm_fail(error, end.status == SM_OUTPUT ? SM_OUTPUT : SM_INPUT, "%s",
+                       bench_process_last_line(log, NULL, sizeof line, line)
+                           ? line
+                           : "python3 made no page, and does not say why");
+    if (!code) return bench_draft_commit(&draft, error);
+    bench_draft_discard(&draft);
+    return code;
 }
 
 static SmCode perform(void *record, int argc, char **argv, SmError *error)

@@ -15,9 +15,9 @@
 #include "step_timer.h"
 
 /* Measures the scene's body on the engine, with params->threads; what is not timed, the checks, has
- * OpenMP's number of the calling thread. A failed check is no error: the row says why it is not
- * valid. Errors are those of creating the engine and of burst.h, and SM_INPUT where regions
- * are too many to be checked. The caller frees the row. */
+ * OpenMP's number of the calling thread, but while a body breaks. A failed check is no error: the
+ * row says why it is not valid. Errors are those of creating the engine and of burst.h, and
+ * SM_INPUT where regions are too many to be checked. The caller frees the row. */
 SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
                      const BenchMeasureParams *params, BenchRow *row, SmError *error);
 

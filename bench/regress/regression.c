@@ -239,7 +239,8 @@ static void write_outliers(FILE *file, const BenchRegression *found, int first, 
 }
 
 /* What is other by its interval, and is not called so: it is little, or by chance. */
-static void write_small(FILE *file, const BenchComparison *one, const char *bullet)
+static void write_small(FILE *file, const BenchRegression *found, const BenchComparison *one,
+                        const char *bullet)
 {
     bool total = !one->value || one->value >= BENCH_TIMES;
     if (!total || one->verdict != BENCH_SAME || (one->low <= 1 && one->high >= 1)) return;
@@ -247,7 +248,9 @@ static void write_small(FILE *file, const BenchComparison *one, const char *bull
     fprintf(file, "%s%s: %s %.1f%% %s, %s the threshold of %.1f%%%s\n", bullet, one->samples->scene,
             bench_value_name(one->samples, one->value), 100 * fabs(one->ratio - 1),
             one->ratio > 1 ? "slower" : "faster", small ? "below" : "beyond", 100 * one->threshold,
-            small ? "" : ", but of so few processes by chance: take more --rounds");
+            small                        ? ""
+            : found->params->interleaved ? ", but not surely: take more --rounds"
+                                         : ", but not surely");
 }
 
 static void write_remarks(FILE *file, const BenchRegression *found, const char *bullet)
@@ -255,7 +258,7 @@ static void write_remarks(FILE *file, const BenchRegression *found, const char *
     for (int i = 0; i < found->count; i++) {
         const BenchComparison *one = &found->list[i];
         if (one->reason[0]) fprintf(file, "%s%s: %s\n", bullet, one->samples->scene, one->reason);
-        write_small(file, one, bullet);
+        write_small(file, found, one, bullet);
         if (i == 0 || found->list[i - 1].samples != one->samples)
             write_outliers(file, found, i, bullet);
     }

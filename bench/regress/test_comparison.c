@@ -536,7 +536,7 @@ TEST(what_may_be_by_chance_is_said)
     fclose(file);
     read_back("chance.txt", sizeof text, text);
     assert_non_null(
-        strstr(text, "a: total 50.0% slower, beyond the threshold of 2.0%, but of so few"));
+        strstr(text, "a: total 50.0% slower, beyond the threshold of 2.0%, but not surely: take"));
     bench_comparisons_free(list, found.count);
     bench_ab_free(&all);
 }

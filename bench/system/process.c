@@ -167,10 +167,11 @@ SmCode bench_script_find(const char *name, char path[PATH_MAX], SmError *error)
 SmCode bench_scratch_make(char folder[PATH_MAX], SmError *error)
 {
     const char *base = getenv("TMPDIR");
-    if (!base || !base[0] || strlen(base) > 4000) base = "/tmp";
-    snprintf(folder, PATH_MAX, "%.4000s/shapebench_XXXXXX", base);
+    if (!base || !base[0] || strlen(base) > 3800) base = "/tmp";
+    snprintf(folder, PATH_MAX, "%.3800s/shapebench_XXXXXX", base);
     if (mkdtemp(folder)) return SM_OK;
-    return sm_fail(error, SM_OUTPUT, "no folder can be made in %.300s: %s", base, strerror(errno));
+    return sm_fail(error, SM_OUTPUT, "cannot write %.300s: %s; set TMPDIR to a folder of yours",
+                   folder, strerror(errno));
 }
 
 void bench_scratch_remove(const char *folder)
@@ -178,8 +179,8 @@ void bench_scratch_remove(const char *folder)
     char path[PATH_MAX];
     DIR *all = opendir(folder);
     for (struct dirent *entry; all && (entry = readdir(all));) {
-        snprintf(path, sizeof path, "%.3800s/%.255s", folder, entry->d_name);
-        if (entry->d_name[0] != '.') unlink(path);
+        snprintf(path, sizeof path, "%.3830s/%.255s", folder, entry->d_name);
+        unlink(path); /* "." and ".." stay */
     }
     if (all) closedir(all);
     rmdir(folder);

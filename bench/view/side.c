@@ -229,7 +229,7 @@ static void step(ViewSide *side, const ViewHand *hand, double share, SmLaps *lap
 
 void view_side_step(ViewSide *side, int steps, const ViewHand *hand)
 {
-    const long sampled = 2; /* one of so many: a browser's clock takes a microsecond a lap */
+    const long sampled = 3; /* one of so many, odd for what goes on in every second: clocks cost */
     if (!view_side_is_there(side)) return;
     for (int i = 0; i < steps; i++) {
         SmLaps laps;

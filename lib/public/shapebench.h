@@ -48,7 +48,6 @@
 #ifndef SHAPEBENCH_H
 #define SHAPEBENCH_H
 
-#include <stddef.h>
 #include <stdint.h>
 
 #ifdef __cplusplus

@@ -80,7 +80,7 @@ class Declarations(unittest.TestCase):
                 wanted[f"sizeof((({kind} *)0)->{name})"] = ctypes.sizeof(of)
         wanted.update(face.header.constant)
         lines = [f'    printf("%lld\\n", (long long)({text}));' for text in wanted]
-        program = "#include <stdio.h>\n#include <shapebench.h>\nint main(void)\n{\n" + "\n".join(lines) + "\n}\n"
+        program = "#include <stddef.h>\n#include <stdio.h>\n#include <shapebench.h>\nint main(void)\n{\n" + "\n".join(lines) + "\n}\n"
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder, "sizes")
             path.with_suffix(".c").write_text(program, encoding="ascii")
@@ -576,7 +576,8 @@ class Simulate(unittest.TestCase):
 
         rest = sb.Voxels(mesh, particles=300).particles()
         mask = rest[:, 0] < rest[:, 0].min() + 0.05
-        self.assertEqual(len({end(mask), end(np.flatnonzero(mask)), end(lambda x: x[:, 0] < rest[:, 0].min() + 0.05)}), 1)
+        ends = {end(mask), end(np.flatnonzero(mask)), end(lambda x: x[:, 0] < rest[:, 0].min() + 0.05)}
+        self.assertEqual(len(ends), 1)
         self.assertNotEqual(end(None), end(mask))
         for wrong in ([], mask[1:], lambda x: x[:, 0] > 9):
             with self.assertRaisesRegex(sb.UsageError, "'pins'"):
@@ -588,7 +589,8 @@ class Simulate(unittest.TestCase):
     def test_meshes_of_other_libraries(self):
         mesh = sb.Mesh.shape("penguin")
         x, t = mesh.vertices, mesh.triangles
-        kinds = (types.SimpleNamespace(vertices=x, faces=t), types.SimpleNamespace(vertices=x.tolist(), triangles=t.tolist()),
+        kinds = (types.SimpleNamespace(vertices=x, faces=t),
+                 types.SimpleNamespace(vertices=x.tolist(), triangles=t.tolist()),
                  types.SimpleNamespace(points=x, cells_dict={"triangle": t, "line": t[:, :2]}))
         for other in kinds:
             self.assertEqual(sb.Mesh(other).triangles.tobytes(), t.tobytes())
@@ -611,6 +613,14 @@ class Simulate(unittest.TestCase):
         with block(2, 2, 2, engine="brute", dt=0.02) as body:
             body.step()
             self.assertEqual(body.counts().time, 0.02)
+
+    def test_one_thing_is_not_taken_for_another(self):
+        mesh = sb.Mesh.shape("block")
+        voxels = sb.Voxels(mesh, particles=8)
+        for make in (lambda: sb.Body(mesh), lambda: sb.Body(voxels, voxels), lambda: sb.Voxels(voxels, particles=8),
+                     lambda: sb.Voxels("block", particles=8)):
+            with self.assertRaisesRegex(sb.UsageError, "' is a .*: a (Mesh|Voxels) is wanted"):
+                make()
 
     def test_progress_is_told(self):
         with unittest.mock.patch.dict(sys.modules, {"tqdm": None, "tqdm.auto": None}), \

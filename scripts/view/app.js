@@ -73,10 +73,9 @@ export class App {
         const [bounds, obstacles] = [this.engine.bounds(), this.engine.obstacles()];
         this.picture.setScene(bounds, obstacles);
         this.stage = findStage(bounds, obstacles);
-        if (!keep) this.meters.forEach((meter) => meter.clear());
+        this.meters.forEach((meter) => (keep ? meter.begin() : meter.clear()));
         if (!keep) this.hands.forget();
         if (!keep) this.panel.forget();
-        this.meters.forEach((meter) => meter.begin());
         this.cost = 0;
         this.views.forEach((view, side) => {
             this.engine.clearStages(side);
@@ -133,7 +132,8 @@ export class App {
         if (!refused) this.original = text;
         if (!refused) this.frame();
         const { engine } = this;
-        $('scene').value = engine.sceneNames().find((name) => engine.sceneText(name) === this.original) ?? '';
+        const names = [...$('scene').options].map((option) => option.value);
+        $('scene').value = names.find((name) => name && engine.sceneText(name) === this.original) ?? '';
         return refused;
     }
 

@@ -91,9 +91,11 @@ const UNBROKEN = 1e8; // Pa: the end of a slider
 // several, are there where that is. `get` and `set` where it is not the plain setting `key`.
 export const SLIDERS = [
     { key: 'w', first: true, label: 'w, half-width of regions', least: 1, most: 8, by: 1, whole: true, start: 2 },
-    { key: 'epsilon', first: true, engine: 'octree', label: 'Octree: epsilon', least: 0, most: 2, by: 0.05, start: 0.5 },
+    { key: 'epsilon', first: true, engine: 'octree', label: 'Octree: epsilon', least: 0, most: 2, by: 0.05,
+        start: 0.5 },
     { key: 'damping', first: true, label: 'Damping', least: 0, most: 1, by: 0.01, start: 0 },
-    { key: 'h', first: true, label: 'Time step h, s (shorter: stiffer)', least: 0.001, most: 0.03, log: true, start: 0.01 },
+    { key: 'h', first: true, label: 'Time step h, s (shorter: stiffer)', least: 0.001, most: 0.03, log: true,
+        start: 0.01 },
     { key: 'particles', label: 'Particles wanted', least: 100, most: 60000, log: true, whole: true,
         set: (text, value) => {
             const without = removeSetting(removeSetting(text, 'cells'), 'cell');

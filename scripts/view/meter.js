@@ -1,7 +1,7 @@
 // meter.js - what a side takes of time in this browser, and how its motion went in the last seconds.
 const LEAST_MS = 500; // what a mean is of; without a display so many steps are enough
 const LEAST_STEPS = 50;
-const SHARES_OF = 20; // ms of steps: every other one has clocks inside, which tell a tenth of a ms
+const SHARES_OF = 30; // ms of steps: each third one has clocks inside, which tell a tenth of a ms
 const SECONDS = 10;
 
 export class Meter {
@@ -12,8 +12,10 @@ export class Meter {
         this.begin();
     }
 
+    // Without a time, that of what has been simulated, stages begin anew, too.
     begin(time = NaN) {
         Object.assign(this, { steps: 0, frames: 0, stepping: 0, whole: 0, time, since: performance.now() });
+        if (Number.isNaN(time)) this.seen = 0;
     }
 
     // A frame's steps took `stepping` ms, and with finding and sending the surface `whole`.

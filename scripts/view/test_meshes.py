@@ -164,7 +164,8 @@ class Meshes(PageCase):
         """What `view` is given a mesh or a scene with a mesh file opens with it; others are refused."""
         with tempfile.TemporaryDirectory() as folder:
             files = {"mine.OFF": OFF, "mine.cfg": b'particles = 500;\nmesh = "mine.OFF";\n',
-                     "lost.cfg": b'particles = 500;\nmesh = "lost.obj";\n', "mine.dae": b"", "bad.ply": b"ply", "none.stl": b"",
+                     "lost.cfg": b'particles = 500;\nmesh = "lost.obj";\n', "mine.dae": b"", "bad.ply": b"ply",
+                     "none.stl": b"",
                      "mine.gltf": CASES["gltf-beside-below.gltf"].data, **CASES["gltf-beside-below.gltf"].beside}
             pathlib.Path(folder, "sub").mkdir()
             for name, data in files.items():

@@ -27,5 +27,5 @@ from .simulate import Motion, simulate
 load = Mesh.load
 
 __all__ = ["Blade", "Body", "Counts", "Criterion", "Detail", "Error", "Handle", "InputError", "LocalWidth", "Mesh",
-           "MeshFacts", "MeshlessParams", "Motion", "Obstacle", "OctreeParams", "ShellParams", "UsageError", "VoxelFacts",
-           "Voxels", "__version__", "engines", "export", "load", "pose", "results", "shapes", "simulate"]
+           "MeshFacts", "MeshlessParams", "Motion", "Obstacle", "OctreeParams", "ShellParams", "UsageError",
+           "VoxelFacts", "Voxels", "__version__", "engines", "export", "load", "pose", "results", "shapes", "simulate"]

@@ -258,7 +258,8 @@ class Body(Made):
         params = face.params("sb_body_params", given, CHOICES)
         self._lock = threading.RLock()
         self._sizes: Optional[Counts] = None  # as long as nothing has changed them
-        self._take("sb_body_create", voxels._handle, surface._handle if surface else None, ctypes.byref(params))
+        self._take("sb_body_create", Voxels._of(voxels, "voxels"),
+                   None if surface is None else Mesh._of(surface, "surface"), ctypes.byref(params))
 
     def __repr__(self) -> str:
         if self._handle is None:

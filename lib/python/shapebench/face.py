@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 HERE = Path(__file__).resolve().parent
-NUMBERS = {"int": ctypes.c_int, "double": ctypes.c_double, "char": ctypes.c_char, "size_t": ctypes.c_size_t,
-           "int64_t": ctypes.c_int64, "uint8_t": ctypes.c_uint8}
+NUMBERS = {"int": ctypes.c_int, "double": ctypes.c_double, "char": ctypes.c_char, "int64_t": ctypes.c_int64,
+           "uint8_t": ctypes.c_uint8}
 
 
 class Error(Exception):

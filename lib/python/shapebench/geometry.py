@@ -64,6 +64,13 @@ class Made:
 
     _free: str
 
+    @classmethod
+    def _of(cls, value: Any, name: str) -> Any:
+        """The handle of one of these; of anything else the library would take the bytes for it."""
+        if not isinstance(value, cls):
+            raise face.UsageError(f"'{name}' is a {type(value).__name__}: a {cls.__name__} is wanted")
+        return value._handle
+
     def _take(self, function: str, *arguments: Any) -> None:
         handle = ctypes.c_void_p()
         face.call(function, *arguments, ctypes.byref(handle))
@@ -88,8 +95,9 @@ def _arrays_of(mesh: Any) -> Tuple[Any, Any]:
 class Mesh(Made):
     """Triangles, closed or not: `vertices` [n, 3], and `triangles` [m, 3] that name three of them each,
     counter-clockwise seen from outside; or, alone, an object that has them: a mesh of trimesh (vertices, faces), Open3D
-    (vertices, triangles) or meshio (points, cells of triangles). Equal positions are merged, and triangles that then repeat a vertex dropped, so
-    numbers may differ from the caller's. It does not change, and may be read by several threads."""
+    (vertices, triangles) or meshio (points, cells of triangles). Equal positions are merged, and triangles that
+    then repeat a vertex dropped, so numbers may differ from the caller's. It does not change, and may be read by
+    several threads."""
 
     _free = "sb_mesh_free"
 
@@ -126,7 +134,8 @@ class Mesh(Made):
 
     def __repr__(self) -> str:
         facts = self.facts()
-        return f"<Mesh: {facts.vertices} vertices, {facts.triangles} triangles, {'' if facts.watertight else 'not '}watertight>"
+        watertight = "watertight" if facts.watertight else "not watertight"
+        return f"<Mesh: {facts.vertices} vertices, {facts.triangles} triangles, {watertight}>"
 
     @property
     def vertices(self) -> NDArray[np.float64]:
@@ -155,7 +164,7 @@ class Voxels(Made):
                  fill: str = "solid", fewer: bool = False) -> None:
         how = face.params("sb_voxel_params", [("fill", fill), ("cell", cell), ("particles", particles),
                                               ("fewer", int(fewer))], {"fill": "SB_SOLID"})
-        self._take("sb_voxels_of_mesh", mesh._handle, ctypes.byref(how))
+        self._take("sb_voxels_of_mesh", Mesh._of(mesh, "mesh"), ctypes.byref(how))
 
     @classmethod
     def from_cells(cls, filled: ArrayLike, cell: float, origin: ArrayLike = (0, 0, 0)) -> "Voxels":

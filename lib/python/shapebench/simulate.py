@@ -1,4 +1,4 @@
-"""A whole simulation in one call, and pictures of bodies."""
+"""A whole simulation in one call."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .picture import draw
 Pins = Union[ArrayLike, Callable[[Doubles], ArrayLike]]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Motion:
     """What simulate() has seen, frame by frame; the first is the body at its start."""
 
@@ -42,8 +42,8 @@ def _pinned(body: Body, pins: Pins) -> NDArray[Any]:
     chosen = np.asarray(pins(rest) if callable(pins) else pins)
     if chosen.dtype == np.bool_:
         if chosen.shape != (len(rest),):
-            raise face.UsageError(f"'pins' has the shape {chosen.shape}: one truth value for each of {len(rest)} particles "
-                                  "is wanted")
+            raise face.UsageError(f"'pins' has the shape {chosen.shape}: one truth value for each of {len(rest)} "
+                                  "particles is wanted")
         chosen = np.flatnonzero(chosen)
     if not chosen.size:
         raise face.UsageError("'pins' chooses no particle")
@@ -74,8 +74,8 @@ def simulate(mesh: Union[Mesh, str, "os.PathLike[str]", Any], *, steps: int = 10
 
     `mesh` is a Mesh, a file's name, or what Mesh() takes: an object of trimesh, Open3D or meshio. `pins` says which
     particles are held where they rest: their numbers, a truth value for each, or a function that makes either of rest
-    positions [n, 3]. `particles`, `cell` and `fill` are those of Voxels; the rest is Body's: engine, w, h or dt, gravity,
-    damping, ... `progress` shows a bar."""
+    positions [n, 3]. `particles`, `cell` and `fill` are those of Voxels; the rest is Body's: engine, w, h or dt,
+    gravity, damping, ... `progress` shows a bar."""
     if every < 1 or steps < 0:
         raise face.UsageError(f"'steps' is {steps} and 'every' {every}: 0 or more, and 1 or more are wanted")
     if not isinstance(mesh, Mesh):
