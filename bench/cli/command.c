@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../lib/mesh/mesh.h"
+
 const char *const bench_papers[] = {"fastlsm", "octree", "meshless", NULL};
 
 void bench_command_machine(const BenchCommon *common, int argc, char **argv, BenchMachine *machine)
@@ -13,6 +15,11 @@ void bench_command_machine(const BenchCommon *common, int argc, char **argv, Ben
     if (isas->count > 1)
         snprintf(machine->isa, sizeof machine->isa, "%s to %s", isas->name[0],
                  isas->name[isas->count - 1]);
+}
+
+void bench_print_mesh(FILE *file, const void *mesh)
+{
+    sm_mesh_print_obj(mesh, file);
 }
 
 static SmCode measure(const BenchCommand *command, int argc, char **argv, void *options,

@@ -80,6 +80,9 @@ typedef struct {
 /* The machine as a command measures on it, with one instruction set or with several. */
 void bench_command_machine(const BenchCommon *common, int argc, char **argv, BenchMachine *machine);
 
+/* An SmMesh as OBJ, for bench_draft_write(). */
+void bench_print_mesh(FILE *file, const void *mesh);
+
 /* Reads the command's options and does it. Returns the program's exit code. */
 int bench_command_run(const BenchCommand *command, int argc, char **argv);
 

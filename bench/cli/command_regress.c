@@ -57,8 +57,7 @@ static const BenchSetting settings[] = {
      BENCH_IN(Options, scenes)},
     {BENCH_OPTION("rounds", "N", 2,
                   "Rounds of two processes of each build and scene (default: 8 or as many as the "
-                  "test needs, "
-                  "or 3 beside a file)"),
+                  "test needs, or 3 beside a file)"),
      BENCH_IN(Options, rounds), 1, 1000},
     {BENCH_OPTION("quick", NULL, 2,
                   "As few rounds as can show a difference, and a third of the repeats: sees what "

@@ -72,11 +72,6 @@ static SmCode print_scene(const char *name, SmError *error)
     return SM_OK;
 }
 
-static void print_mesh(FILE *file, const void *what)
-{
-    sm_mesh_print_obj(what, file);
-}
-
 static SmCode write_mesh(const Options *options, SmError *error)
 {
     const char *name = options->common.word[0], *path = options->write;
@@ -91,7 +86,7 @@ static SmCode write_mesh(const Options *options, SmError *error)
         code = sm_shape_mesh(name, &mesh, error);
     }
     if (code) return code;
-    code = bench_draft_write(path, print_mesh, &mesh, error);
+    code = bench_draft_write(path, bench_print_mesh, &mesh, error);
     sm_mesh_free(&mesh);
     return code;
 }

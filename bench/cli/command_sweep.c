@@ -72,9 +72,8 @@ static void check(const struct argp_state *state, void *record)
 {
     const Options *options = record;
     const char *word = options->its.common.words ? options->its.common.word[0] : "";
-    size_t length = strlen(word);
-    bool file = length > 4 && !strcmp(word + length - 4, ".cfg");
-    bool scene = file || (bench_scene_text(word, NULL) && access(word, F_OK) != 0);
+    bool scene =
+        bench_scene_is_file(word) || (bench_scene_text(word, NULL) && access(word, F_OK) != 0);
     if (scene || sm_mesh_readable(word))
         bench_usage(state, "%s: FILE.h5 alone is shown; --%s %s is measured", word,
                     scene ? "scene" : "mesh", word);

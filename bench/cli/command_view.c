@@ -28,20 +28,14 @@ static const char help[] =
     "Make a page that runs both engines in a browser on a scene or a mesh: pull it, cut it, turn w "
     "and epsilon. One file, without a server or a network.\v"
     "SCENE: a built-in scene or a scene file, whose mesh the page carries (default: penguin). "
-    "MESH: "
-    "as of run; it drops on the ground. 'scripts/run view' of a clone builds the page of that "
-    "clone's engines, and films it.\n" BENCH_EXIT_CODES;
+    "MESH: as of run; it drops on the ground. 'scripts/run view' of a clone builds the page of "
+    "that clone's engines, and films it.\n" BENCH_EXIT_CODES;
 
 /* What the page is to open: a scene's text, a mesh; files, or empty. */
 typedef struct {
     char folder[PATH_MAX]; /* for those that are made of it */
     char text[PATH_MAX], mesh[PATH_MAX];
 } Given;
-
-static void print_mesh(FILE *file, const void *what)
-{
-    sm_mesh_print_obj(what, file);
-}
 
 static void print_text(FILE *file, const void *what)
 {
@@ -57,7 +51,7 @@ static SmCode take_mesh(const char *path, const SmMesh *mesh, Given *given, SmEr
     if (!shape && sm_mesh_readable(path)) return SM_OK;
     bench_mesh_name(shape ? path + 6 : path, name);
     snprintf(given->mesh, sizeof given->mesh, "%.4000s/%s.obj", given->folder, name);
-    return bench_draft_write(given->mesh, print_mesh, mesh, error);
+    return bench_draft_write(given->mesh, bench_print_mesh, mesh, error);
 }
 
 /* Its mesh keeps the name that the text has. */
@@ -111,7 +105,8 @@ static SmCode make_page(const Given *given, const char *output, SmError *error)
     BenchProcessEnd end = {0};
     SmError why;
     if (bench_process_run(&process, &end, &why))
-        code = sm_fail(error, SM_INPUT, "%s; python3 makes the page: install it", why.text);
+        code = sm_fail(error, SM_INPUT, "%s%s", why.text,
+                       bench_process_caught() ? "" : "; python3 makes the page: install it");
     else if (end.status)
         code = sm_fail(error, end.status == SM_OUTPUT ? SM_OUTPUT : SM_INPUT, "%s",
                        bench_process_last_line(log, NULL, sizeof line, line)

@@ -275,25 +275,29 @@ const char *bench_scene_text(const char *name, size_t *size)
     return NULL;
 }
 
+bool bench_scene_is_file(const char *path)
+{
+    size_t length = strlen(path);
+    return length > 4 && !strcmp(path + length - 4, ".cfg");
+}
+
 bool bench_scene_named(const char *name_or_path)
 {
-    size_t length = strlen(name_or_path);
-    bool file = length > 4 && !strcmp(name_or_path + length - 4, ".cfg");
-    return file || (!strpbrk(name_or_path, "./") && strncmp(name_or_path, "shape:", 6) != 0);
+    return bench_scene_is_file(name_or_path) ||
+           (!strpbrk(name_or_path, "./") && strncmp(name_or_path, "shape:", 6) != 0);
 }
 
 SmCode bench_scene_find(const char *name_or_path, BenchScene *scene, SmError *error)
 {
-    size_t size, length = strlen(name_or_path);
+    size_t size;
     const char *text = bench_scene_text(name_or_path, &size);
     if (text) {
         char file[BENCH_NAME + 8];
         snprintf(file, sizeof file, "%s.cfg", name_or_path);
         return bench_scene_parse(text, size, file, scene, error);
     }
-    bool path =
-        strchr(name_or_path, '/') || (length > 4 && !strcmp(name_or_path + length - 4, ".cfg"));
-    if (path) return bench_scene_read(name_or_path, scene, error);
+    if (strchr(name_or_path, '/') || bench_scene_is_file(name_or_path))
+        return bench_scene_read(name_or_path, scene, error);
     if (access(name_or_path, F_OK) == 0)
         return sm_fail(error, SM_USAGE,
                        "%.100s: the ending of its name must say what it is: .cfg a scene, .obj, "

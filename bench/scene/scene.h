@@ -145,7 +145,9 @@ void bench_scene_said(const BenchScene *scene, size_t size, char *text);
 /* Text of a built-in scene's file (and its size, unless NULL), or NULL. */
 const char *bench_scene_text(const char *name, size_t *size);
 
-/* Is it a scene's name or file, by its letters? Anything else is a mesh or points. */
+/* Is it a scene file by its ending? Is it that or a scene's name, by its letters? Anything else is
+ * a mesh or points. */
+bool bench_scene_is_file(const char *path);
 bool bench_scene_named(const char *name_or_path);
 
 /* Reads a scene file, or finds a built-in scene by name. Errors name file and line. */
