@@ -21,7 +21,7 @@ static long index_of(const LsmContacts *k, long number)
     return place_of(k->lsm, number / k->lsm->lattice.count, number % k->lsm->lattice.count);
 }
 
-LsmContacts *lsm_contacts_build(Lsm *lsm)
+LsmContacts *lsm_contacts_build(Lsm *lsm, real rounding)
 {
     const SmCollideParams *params = &lsm->params.collide;
     long bodies = lsm->bodies;
@@ -30,7 +30,8 @@ LsmContacts *lsm_contacts_build(Lsm *lsm)
     *k = (LsmContacts){.lsm = lsm};
     k->x = sm_alloc((size_t)(bodies * lsm->lattice.count), sizeof *k->x);
     lsm_outline_build(&lsm->lattice, lsm->mass, &k->outline);
-    k->collide = sm_collide_build(&k->outline.rest, params, bodies, lsm->params.threads);
+    k->collide = sm_collide_build(&k->outline.rest, params, bodies, contact_rounding(rounding),
+                                  lsm->params.threads);
     return k;
 }
 

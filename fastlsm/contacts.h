@@ -16,8 +16,9 @@
 
 typedef struct LsmContacts LsmContacts;
 
-/* Of a body, or of instances, which must outlive it. NULL where nothing is to collide. */
-LsmContacts *lsm_contacts_build(Lsm *lsm);
+/* Of a body, or of instances, which must outlive it; `rounding` as of bodies at rest. NULL where
+ * nothing is to collide. */
+LsmContacts *lsm_contacts_build(Lsm *lsm, real rounding);
 void lsm_contacts_free(LsmContacts *contacts);
 
 /* Contacts of the present positions, numbered as the lattice counts; the caller frees. */

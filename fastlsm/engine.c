@@ -314,12 +314,12 @@ static SmCode engine_create(const SmVoxels *voxels, const SmEngineParams *params
     for (int d = 0; d < 3; d++)
         lsm->gravity[d] = (real)(params->gravity[d] * params->h * params->h / lsm->cell);
     start_at_rest(e);
-    e->contacts = lsm_contacts_build(lsm);
+    e->rounding = rounding_square(longest(&lsm->lattice), lsm->w);
+    e->contacts = lsm_contacts_build(lsm, e->rounding);
     bool abreast = e->bodies > 1;
     e->momentum = momentum_build(abreast ? e->count : lsm->blocks, e->bodies, abreast,
                                  keep_steps(e->count), lsm->threads);
     lsm->obstacles.notes = &e->momentum->notes;
-    e->rounding = rounding_square(longest(&lsm->lattice), lsm->w);
     divide_momentum(e);
     sm_team_leave(team);
     e->build_seconds = sm_now() - start;

@@ -35,7 +35,8 @@ OctContacts *oct_contacts_build(Oct *oct, const OctStructure *structure,
     OctContacts *k = sm_alloc(1, sizeof *k);
     k->oct = oct;
     oct_outline_build(structure, &k->outline);
-    k->collide = sm_collide_build(&k->outline.rest, params, oct->instances, oct->params.threads);
+    k->collide = sm_collide_build(&k->outline.rest, params, oct->instances,
+                                  contact_rounding(oct->at_rest), oct->params.threads);
     make_room(k);
     return k;
 }

@@ -504,6 +504,10 @@ void bench_check_text(const BenchDeviation *found, size_t size, char *text)
                   found->drift.steps, found->drift.linear, found->drift.angular);
     if (found->drift.held > 0)
         sm_append(text, size, ", along the planes that hold it by %.1g", found->drift.held);
+    if (found->drift.touching > 0)
+        sm_append(text, size, ", with what it touches by %.1g", found->drift.touching);
+    if (found->drift.hung > 0)
+        sm_append(text, size, ", about a held particle by %.1g", found->drift.hung);
     if (found->damping_tolerance > 0)
         sm_append(text, size, ", damping within %.1g of the largest velocity (allowed %.0e)",
                   found->damping_error, found->damping_tolerance);

@@ -32,13 +32,15 @@ typedef struct {
 /* What rounding makes of the momenta of a body left alone, or on planes (step_check.h); of the body
  * where it is largest. */
 typedef struct {
-    long steps;     /* that it was left alone; 0: not tried */
-    double linear;  /* change of its centre's velocity: cells a step, each step */
-    double angular; /* of its angular momentum over sum m r^2: radians a step, each step */
-    double held;    /* of its centre's velocity along the scene's planes, when it falls on them: as
-                     * linear; 0: there are none, or they leave no direction free */
-    double apart;   /* how many times as wide it becomes, of a body in pieces, which fly apart; 1 of
-                     * others */
+    long steps;      /* that it was left alone; 0: not tried */
+    double linear;   /* change of its centre's velocity: cells a step, each step */
+    double angular;  /* of its angular momentum over sum m r^2: radians a step, each step */
+    double held;     /* of its centre's velocity along the scene's planes, when it falls on them: as
+                      * linear; 0: there are none, or they leave no direction free */
+    double touching; /* as held, of all bodies together, with contacts; 0: none collide */
+    double hung;     /* as angular, about a particle of the first handle, which holds the body */
+    double apart; /* how many times as wide it becomes, of a body in pieces, which fly apart; 1 of
+                   * others */
 } BenchDrift;
 
 /* What was found, of all instances. */

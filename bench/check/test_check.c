@@ -485,6 +485,8 @@ TEST(drift_has_bounds)
     } at[] = {{"single", "free steps", {.linear = 5e-9}},
               {"single", "free steps", {.angular = 5e-9}},
               {"single", "along the planes", {.held = 1e-9}},
+              {"single", "all that it touches", {.touching = 1e-9}},
+              {"single", "a particle that is held", {.hung = 5e-9}},
               {"double", "free steps", {.linear = 1e-14}},
               {"double", "free steps", {.angular = 1e-14}},
               {"double", "along the planes", {.held = 2e-15}},
@@ -497,6 +499,8 @@ TEST(drift_has_bounds)
             drift.linear *= factor;
             drift.angular *= factor;
             drift.held *= factor;
+            drift.touching *= factor;
+            drift.hung *= factor;
             assert_int_equal(bench_drift_verdict(&drift, at[i].precision, sizeof reason, reason),
                              !above);
             if (above && !strstr(reason, at[i].words)) fail_msg("%zu: '%s'", i, reason);

@@ -35,6 +35,8 @@ static void check_drift(const BenchRunner *runner, BenchDeviation *worst, BenchR
     worst->drift.apart = fmax(worst->drift.apart, drift.apart);
     row->drift = worst->drift.linear = fmax(worst->drift.linear, drift.linear);
     worst->drift.held = fmax(worst->drift.held, drift.held);
+    worst->drift.touching = fmax(worst->drift.touching, drift.touching);
+    worst->drift.hung = fmax(worst->drift.hung, drift.hung);
     row->twist = worst->drift.angular = fmax(worst->drift.angular, drift.angular);
     row->drift_steps = worst->drift.steps;
     bench_check_text(worst, sizeof row->found, row->found);

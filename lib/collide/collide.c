@@ -311,7 +311,7 @@ static double outwards(const SmCollide *c, const SmCollideContact *contact, doub
 static void stop(SmCollide *c, const SmCollideContact *contact, double friction)
 {
     double u[3], after[3], impulse[3], speed = outwards(c, contact, u);
-    if (!(speed < 0)) return;
+    if (!(speed < -contact->noise)) return;
     for (int d = 0; d < 3; d++) {
         after[d] = (1 - friction) * (u[d] - speed * contact->out[d]);
         impulse[d] = contact->mass * (after[d] - u[d]);
@@ -346,16 +346,37 @@ static void push_out(SmCollide *c)
     }
 }
 
+static bool same_bodies(const SmCollide *c, const SmCollideContact *a, const SmCollideContact *b)
+{
+    long nodes = c->shape.nodes, cells = c->work->cells;
+    return a->node / nodes == b->node / nodes && a->cell / cells == b->cell / cells;
+}
+
+/* The biases of contacts of the same two bodies that follow each other, and their noise, if none
+ * of them approaches faster; where the next ones begin. */
+static long prepare(SmCollide *c, long first)
+{
+    SmCollideContact *of = c->contact;
+    double fastest = 0, u[3];
+    long end = first;
+    do {
+        relative(c, &of[end], u);
+        for (int d = 0; d < 3; d++) {
+            of[end].bias[d] = 0.5 * (u[d] - of[end].bias[d]);
+            u[d] -= of[end].bias[d];
+        }
+        fastest = fmax(fastest, -sm_dot(u, of[end].out));
+    } while (++end < c->contact_count && same_bodies(c, &of[first], &of[end]));
+    for (long i = first; i < end; i++)
+        of[i].noise = fastest <= c->rounding && of[i].depth < SM_COLLIDE_DEEP ? c->rounding : 0;
+    return end;
+}
+
 void sm_collide_respond(SmCollide *c)
 {
     double(*before)[3] = c->work->before;
-    c->reserve *= SM_COLLIDE_KEPT;
     if (!c->contact_count) return;
-    for (long i = 0; i < c->contact_count; i++) {
-        double u[3];
-        relative(c, &c->contact[i], u);
-        for (int d = 0; d < 3; d++) c->contact[i].bias[d] = 0.5 * (u[d] - c->contact[i].bias[d]);
-    }
+    for (long next = 0; next < c->contact_count;) next = prepare(c, next);
     memcpy(before, c->v, (size_t)c->node_count * sizeof *before);
     for (int sweep = 0; sweep < SM_COLLIDE_SWEEPS; sweep++)
         for (long i = 0; i < c->contact_count; i++)
@@ -399,11 +420,12 @@ static void clear(SmCollide *c)
 }
 
 SmCollide *sm_collide_build(const SmCollideRest *rest, const SmCollideParams *params, long bodies,
-                            int threads)
+                            double rounding, int threads)
 {
     SmCollide *c = sm_alloc(1, sizeof *c);
     c->params = *params;
     c->bodies = bodies;
+    c->rounding = rounding;
     c->threads = sm_team(threads);
     build(c, rest);
     return c;

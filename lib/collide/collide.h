@@ -26,9 +26,13 @@
  * w_c^2 / m_c, and the kinetic energy by mu (|u'|^2 - |u|^2) / 2. First all contacts, a few times
  * in turn, lose the part of u that leads deeper and the share `friction` of the tangential one:
  * |u'| <= |u|. The energy they lose is added to a reserve, from which each contact gets the same
- * share of the energy that it takes to push it out at SM_COLLIDE_PUSH x depth; the reserve decays
- * in every step and is never negative. So H + reserve never grows, and H never exceeds what it was
- * when the reserve was 0. What overlaps and rests stays as it is while the reserve is 0.
+ * share of the energy that it takes to push it out at SM_COLLIDE_PUSH x depth; the reserve is never
+ * negative. So H + reserve never grows, and H never exceeds what it was when the reserve was 0. It
+ * lasts: a body that lies on another sinks in every step, and what that sets free raises it again.
+ * What overlaps and rests stays as it is while the reserve is 0, but for rounding, which goes
+ * either way: were only what leads deeper stopped, bodies would creep apart. So it is left alone
+ * (`rounding`) between bodies of which nothing approaches faster, where they are not deep in each
+ * other.
  *
  * Speed limit: a node that moves, relative to the cells that it meets, by less than half the
  * thickness of what they are part of in a step is found before it is nearer to the far side, and
@@ -54,7 +58,7 @@
 #include "rest.h"
 
 #define SM_COLLIDE_PUSH 0.25 /* share of the depth that is pushed out in a step, at most */
-#define SM_COLLIDE_KEPT 0.98 /* share of the reserve that lasts to the next step */
+#define SM_COLLIDE_DEEP 0.25 /* cells, from where on rounding is stopped, too */
 
 #define SM_COLLIDE_SPEED    0.15 /* of the thickness of a wall, that a body may fly at in a step */
 #define SM_COLLIDE_FLATTEST 0.1  /* a cell with less of its volume has no inside, */
@@ -70,6 +74,7 @@ typedef struct {
     int carrier[SM_COLLIDE_CORNERS]; /* places in SmCollide.node, and that of the node itself */
     int place;
     double mass;    /* mu */
+    double noise;   /* approach that is not stopped */
     double bias[3]; /* takes u of the velocities after the step to that at the positions */
 } SmCollideContact;
 
@@ -80,6 +85,7 @@ typedef struct {
     SmCollideParams params;
     long bodies, contact_count, node_count;
     int threads;
+    double rounding; /* cells per step by which rounding moves nodes at rest */
     double reserve; /* energy taken from contacts and not yet returned, in the masses' unit x (cells
                        / step)^2 */
     SmCollideContact *contact; /* [contact_count] in an order that positions decide */
@@ -88,10 +94,11 @@ typedef struct {
     SmCollideWork *work;
 } SmCollide;
 
-/* For `bodies` instances of the body; threads 0: OpenMP's number. The description is not copied:
- * what it points to stays where it is until the next one. Free with sm_collide_free(). */
+/* For `bodies` instances of the body; `rounding`: see above; threads 0: OpenMP's number. The
+ * description is not copied: what it points to stays where it is until the next one. Free with
+ * sm_collide_free(). */
 SmCollide *sm_collide_build(const SmCollideRest *rest, const SmCollideParams *params, long bodies,
-                            int threads);
+                            double rounding, int threads);
 void sm_collide_free(SmCollide *collide);
 
 /* The body has changed (broken links, cut or refined cells): its new description. Node numbers may

@@ -20,6 +20,13 @@ static inline real rounding_square(double extent, double reach)
     return (real)((way < most ? way : most) * (way < most ? way : most));
 }
 
+/* Cells a step, at most, by which rounding moves what touches something: more than in a body at
+ * rest, since it still trembles from the blow. */
+static inline double contact_rounding(real square)
+{
+    return 4 * sqrt((double)square);
+}
+
 /* Keeps rounding from setting a body at rest in motion: a particle that does not move is pulled
  * only where its goal is farther off than the square root of `rounding`. */
 SM_INLINE void hold_at_rest(real rounding, const vec v[3], vec pull[3])
