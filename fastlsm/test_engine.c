@@ -163,7 +163,7 @@ TEST(what_touches_does_not_creep)
     engines[0]->bound(engine, &(SmBoundary){.obstacle_count = 1, .obstacle = &ground});
     long n = 2 * voxels.particle_count;
     double(*x)[3] = triples(n), (*later)[3] = triples(n);
-    for (int step = 0; step < 7000; step++) {
+    for (int step = 0; step < 4000; step++) {
         engines[0]->step(engine, NULL);
         if (step == 1999) engines[0]->get(engine, SM_POSITION, x);
     }

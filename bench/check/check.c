@@ -476,6 +476,7 @@ void bench_check_merge(const BenchDeviation *found, BenchDeviation *worst)
     worst->pushed_wrong += found->pushed_wrong;
     worst->parted_wrong += found->parted_wrong;
     worst->contacts += found->contacts;
+    worst->deepest = fmax(worst->deepest, found->deepest);
     worst->contacts_wrong += found->contacts_wrong;
     worst->motion_error = fmax(worst->motion_error, found->motion_error);
     worst->turn_error = fmax(worst->turn_error, found->turn_error);
@@ -502,19 +503,19 @@ void bench_check_text(const BenchDeviation *found, size_t size, char *text)
         sm_append(text, size,
                   ", over %ld free steps it drifts by %.1g cells and %.1g radians a step",
                   found->drift.steps, found->drift.linear, found->drift.angular);
-    if (found->drift.held > 0)
-        sm_append(text, size, ", along the planes that hold it by %.1g", found->drift.held);
+    if (found->drift.held > 0) sm_append(text, size, ", on planes by %.1g", found->drift.held);
     if (found->drift.touching > 0)
-        sm_append(text, size, ", with what it touches by %.1g", found->drift.touching);
+        sm_append(text, size, ", in contact by %.1g", found->drift.touching);
     if (found->drift.hung > 0)
-        sm_append(text, size, ", about a held particle by %.1g", found->drift.hung);
+        sm_append(text, size, ", held at a point by %.1g", found->drift.hung);
     if (found->damping_tolerance > 0)
         sm_append(text, size, ", damping within %.1g of the largest velocity (allowed %.0e)",
                   found->damping_error, found->damping_tolerance);
     if (found->contact_nodes > 0)
-        sm_append(text, size, ", contacts of %ld of %ld surface nodes right (%ld of %ld)",
+        sm_append(text, size,
+                  ", contacts of %ld of %ld surface nodes right (%ld of %ld; %.2g cells deep)",
                   found->contact_nodes, found->contact_all, found->contacts - found->contacts_wrong,
-                  found->contacts);
+                  found->contacts, found->deepest);
     if (found->obstacles)
         sm_append(text, size,
                   ", %ld particles stopped by obstacles, all where brute force has them",

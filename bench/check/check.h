@@ -65,6 +65,7 @@ typedef struct {
                       * tied or in a region of which rounding decides whether it is solid */
     double unresolved_error; /* of those, how far the step takes them elsewhere, in cells */
     long contact_nodes;      /* whose contacts were compared; 0: nothing collides */
+    double deepest;          /* contact, in cells */
     long contact_all;        /* nodes at the surface of all bodies, which alone have any */
     long contacts;           /* of those compared, the engine's or brute force's */
     long contacts_wrong;     /* in one of the two only, or otherwise */

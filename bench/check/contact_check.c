@@ -177,6 +177,8 @@ static void compare_contacts(const Contacts *c, BenchDeviation *found)
     long at = 0;
     bool *chosen = sample(c, &found->contact_nodes);
     for (long i = 0; i < c->all; i++) found->contact_all += ref_collide_outer(c->twin, i);
+    for (long i = 0; i < c->count; i++)
+        found->deepest = fmax(found->deepest, c->contact[i].depth / c->check->body->voxels.cell);
     for (long number = 0; number < c->all; number++) {
         while (at < c->count && c->contact[at].particle < number) at++;
         if (!chosen[number]) continue;

@@ -30,7 +30,7 @@ static bool print_deviation(const BenchRunner *runner)
         return true;
     }
     BenchCheck check;
-    char text[512], reason[160];
+    char text[640], reason[160];
     bench_check_begin(scene, runner->body, runner->type, runner->engine, &check);
     BenchDeviation found = bench_check_find(&check, runner);
     if (found.finite) found.drift = bench_drift(runner);
