@@ -1,4 +1,4 @@
-"""What plot_sweep.py, plot_slice.py, plot_map.py, plot_calibration.py, plot_convergence.py and render.py share: how
+"""What plot_sweep.py, plot_map.py, plot_calibration.py, plot_convergence.py and render.py share: how
 they are called, read and write, and end."""
 
 import os

@@ -50,7 +50,7 @@ target_link_libraries(store_body PRIVATE shapebench_flags shapebench_engines sha
 
 set(scripts_folder ${CMAKE_INSTALL_DATADIR}/shapebench)
 install(TARGETS shapebench)
-install(PROGRAMS scripts/build_revision scripts/plot_sweep.py scripts/plot_slice.py scripts/plot_map.py
+install(PROGRAMS scripts/build_revision scripts/plot_sweep.py scripts/plot_map.py
   scripts/plot_calibration.py scripts/render.py scripts/brute_force.py DESTINATION ${scripts_folder})
 install(FILES scripts/plots.py DESTINATION ${scripts_folder})
 install(FILES results/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/results) # has readers of the files

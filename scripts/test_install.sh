@@ -13,7 +13,7 @@ cmake --install "$build" --prefix "$prefix" >"$prefix/log" || { cat "$prefix/log
 export_line=$(sed -n 's/^ *export PKG_CONFIG_PATH=/export PKG_CONFIG_PATH=/p' "$here/../lib/README.md")
 [ -n "$export_line" ] || { echo "no export PKG_CONFIG_PATH in lib/README.md"; exit 1; }
 eval "${export_line//PREFIX/\$prefix}"
-for script in brute_force.py render.py plots.py plot_calibration.py plot_map.py plot_slice.py plot_sweep.py report/main.py report/live.js; do
+for script in brute_force.py render.py plots.py plot_calibration.py plot_map.py plot_sweep.py report/main.py report/live.js; do
     cmp -s "$here/$script" "$prefix/share/shapebench/$script" ||
         { echo "not installed: $script"; exit 1; }
 done

@@ -35,7 +35,6 @@ COMMANDS = {  # what is written: the command, without its output; it comes last
     "claims.h5": [PROGRAM, "claims", "--claims", "mine.cfg", "--claim", "mine", "--quick", "-o"],
     "beam.h5": [PROGRAM, "calibrate", "--scene", "beam.cfg", "--w", "1:2", "--epsilon", "0", "--across", "1",
                 "--aspect", "none", "--step", "none", "-o"],
-    "slice.h5": [PROGRAM, "info", "shape:block", "--slice", "z=0.5", "-o"],
     "map.h5": [PROGRAM, *MAP, "-o"],
     "motion.vtkhdf": [PROGRAM, "run", "a.cfg", "--frames", "3000", "--record", "particles", "-o"],
     "mesh.obj": [PROGRAM, "scenes", "penguin", "--write-mesh"],
@@ -43,9 +42,9 @@ COMMANDS = {  # what is written: the command, without its output; it comes last
     "page.html": [PROGRAM, "report", "kept-rows.h5", "-o"],
     "folder": [PROGRAM, "report", "kept-rows.h5", "-o"],
     "sweep.svg": ["plot_sweep.py", "kept-sweep.h5", "-o"],
-    "slice.png": ["plot_slice.py", "kept-slice.h5", "-o"],
+    "sweep.png": ["plot_sweep.py", "kept-sweep.h5", "-o"],
 }
-KEPT = {"kept-" + name: name for name in ("rows.h5", "sweep.h5", "slice.h5")}
+KEPT = {"kept-" + name: name for name in ("rows.h5", "sweep.h5")}
 GOES_ON = ("sweep.h5", "beam.h5")  # from a file that is there; the others replace it
 ENDS = (signal.SIGKILL, signal.SIGHUP, signal.SIGINT, signal.SIGTERM, signal.SIGQUIT, signal.SIGUSR1, signal.SIGXCPU)
 WHOLE = {".obj": b"\n", ".json": b"}\n", ".html": b"</html>", ".svg": b"</svg>", ".png": b"IEND\xaeB`\x82"}

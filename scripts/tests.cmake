@@ -166,7 +166,7 @@ function(add_script_test name script)
 endfunction()
 
 if(NOT SHAPEBENCH_SANITIZE AND NOT SHAPEBENCH_CORE)
-  foreach(plot sweep slice map calibration convergence)
+  foreach(plot sweep map calibration convergence)
     add_script_test(plot_${plot} test_plot_${plot}.sh ${CMAKE_BINARY_DIR})
   endforeach()
   add_script_test(baselines test_baselines.py $<TARGET_FILE:shapebench_shared>)

@@ -8,7 +8,6 @@
 #include "../../lib/voxel/voxelise.h"
 #include "../scene/body.h"
 #include "../scene/map.h"
-#include "../scene/slice.h"
 #include "../store/draft.h"
 #include "command.h"
 #include "machine_info.h"
@@ -18,11 +17,9 @@ typedef struct {
     long particles;
     const char *format; /* NULL: not given */
     bool overwrite;
-    const char *slice; /* NULL: none */
-    BenchSlice plane;
     bool map;
     long nodes;         /* of the map's shell; 0: not given */
-    const char *output; /* of the slice or the map; NULL: none */
+    const char *output; /* of the map; NULL: none */
 } Options;
 
 /* What is said of one mesh. */
@@ -42,21 +39,13 @@ static const BenchSetting settings[] = {
     {BENCH_OPTION("particles", "N", 1,
                   "Particle count of the lattice that is tried (default: 2000)"),
      BENCH_IN(Options, particles), 8, 1000000000},
-    {BENCH_OPTION(
-         "slice", "AXIS=SHARE", 2,
-         "Instead, of one mesh or of points with normals: the signed distance from the surface "
-         "that the meshless engine makes of them, on the plane so far through their box "
-         "(z=0.5), into --output"),
-     BENCH_IN(Options, slice)},
     {BENCH_OPTION("map", NULL, 2,
                   "Instead, of one mesh or of points: the conformal map of its surface, and the "
                   "nodes that the shell engine puts into it; with --output also stored"),
      BENCH_IN(Options, map)},
     {BENCH_OPTION("nodes", "N", 2, "Wanted nodes of the map's shell (default: 450)"),
      BENCH_IN(Options, nodes), 8, 1e6},
-    {BENCH_OUTPUT_OPTION("FILE.h5", 2,
-                         "HDF5 file of the slice or the map; scripts/plot_slice.py and "
-                         "scripts/plot_map.py draw it"),
+    {BENCH_OUTPUT_OPTION("FILE.h5", 2, "HDF5 file of the map; scripts/plot_map.py draws it"),
      BENCH_IN(Options, output)},
     BENCH_OVERWRITE_OPTION(Options, overwrite, 2),
     {0},
@@ -65,20 +54,14 @@ static const BenchSetting settings[] = {
 static void check(const struct argp_state *state, void *record)
 {
     Options *options = record;
-    if (options->slice && !bench_slice_parse(options->slice, &options->plane))
-        bench_usage(state, "--slice: '%.40s' is not x=SHARE, y=SHARE or z=SHARE, 0 to 1",
-                    options->slice);
-    if (!options->common.words && (options->slice || options->map || options->particles))
+    if (!options->common.words && (options->map || options->particles))
         bench_usage(state, "which MESH?");
-    if (options->map && options->slice) bench_usage(state, "--slice or --map, not both");
     if (options->nodes && !options->map) bench_usage(state, "--nodes goes with --map");
-    if (!options->map && !options->slice != !options->output)
-        bench_usage(state, "--slice and --output go together, or --map and --output");
+    if (options->output && !options->map) bench_usage(state, "--output goes with --map");
     if (options->overwrite && !options->output)
         bench_usage(state, "--overwrite needs --output: it replaces that file");
-    const char *only = options->map ? "--map" : options->slice ? "--slice" : NULL;
-    if (only && (options->common.words > 1 || options->format || options->particles))
-        bench_usage(state, "%s: of one mesh, without --format and --particles", only);
+    if (options->map && (options->common.words > 1 || options->format || options->particles))
+        bench_usage(state, "--map: of one mesh, without --format and --particles");
 }
 
 static const char help[] =
@@ -192,15 +175,6 @@ static json_t *to_json(const char *name, const Facts *facts)
         (int)facts->solid, "verdict", bench_json_text(facts->verdict), "cell", facts->cell);
 }
 
-static SmCode cut_slice(const Options *options, SmError *error)
-{
-    const char *mesh = options->common.word[0];
-    SmCode code = bench_draft_reserve(options->output, options->overwrite, error);
-    if (!code) code = bench_slice_write(mesh, &options->plane, options->output, error);
-    if (!code && !options->common.quiet) printf("wrote %s\n", options->output);
-    return code;
-}
-
 static void print_map(const char *name, const BenchMap *all)
 {
     const RefSurfaceMap *map = &all->map;
@@ -257,7 +231,6 @@ static SmCode perform(void *record, int argc, char **argv, SmError *error)
         bench_machine_info(&machine, json);
         return SM_OK;
     }
-    if (options->slice) return cut_slice(options, error);
     if (options->map) return look_at_map(options, error);
     long particles = options->particles ? options->particles : 2000;
     SmCode code = SM_OK;

@@ -195,7 +195,7 @@ TEST(mistakes_of_other_commands_are_too)
         {"scenes penguin --write-mesh /tmp", 4, "it is there and not a regular file"},
         {"tables --scene wide.cfg", 3, "wide.cfg: regions with 4.98e+09 members take too long"},
         {"tables --repeats 0", 2, "--repeats: '0'"},
-        {"info shape:block --slice z=0.5 -o a.h5 --particles 9", 2, "without --format and --part"},
+        {"info shape:block --map --particles 9", 2, "without --format and --part"},
         {"tables --paper unknown", 2, "'unknown' is not one of fastlsm, octree, meshless"},
         {"tables --paper octre", 2, "did you mean 'octree'? See"},
         {"claims --paper fastlms", 2, "did you mean 'fastlsm'? See"},

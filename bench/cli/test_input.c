@@ -29,7 +29,7 @@ TEST(pipes_and_devices_are_refused_at_once)
                                            "claims --list --claims zero.cfg",
                                            "run pipe.xyz --engine meshless",
                                            "run zero.xyz --engine meshless",
-                                           "info zero.xyz --slice z=0.5 -o slice.h5",
+                                           "info zero.xyz",
                                            "run pipe.ply --engine meshless",
                                            "run zero.ply --engine meshless",
                                            "run pipe.obj",

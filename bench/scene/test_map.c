@@ -234,7 +234,6 @@ TEST(wrong_options_are_said)
 {
     static const Mistake mistakes[] = {
         {"info --map", 2, "which MESH?"},
-        {"info shape:bar --map --slice z=0.5 -o a.h5", 2, "--slice or --map, not both"},
         {"info shape:bar shape:block --map", 2, "--map: of one mesh"},
         {"info shape:bar --map --format json", 2, "--map: of one mesh, without --format"},
         {"info shape:bar --map --particles 90", 2, "--map: of one mesh, without --format"},

@@ -228,13 +228,7 @@ TEST(wrong_options_are_said)
         {"run shape:bar --engine meshless --density -1", 2, "--density: '-1'"},
         {"run shape:bar --engine meshless --modes 6", 2, "--modes: '6'"},
         {"run shape:bar --engine meshless --record particles", 2, "--record"},
-        {"info shape:bar --slice w=0.5 -o a.h5", 2, "--slice: 'w=0.5'"},
-        {"info shape:bar --slice z=1.5 -o a.h5", 2, "--slice: 'z=1.5'"},
-        {"info shape:bar --slice z=0.5", 2, "--slice and --output go together"},
-        {"info shape:bar -o a.h5", 2, "--slice and --output go together"},
-        {"info shape:bar shape:block --slice z=0.5 -o a.h5", 2, "of one mesh"},
-        {"info absent.xyz --slice z=0.5 -o a.h5", 3, "absent.xyz"},
-        {"info shape:bar --slice z=0.5 -o no/such/a.h5", 4, "no/such/a.h5"},
+        {"info shape:bar -o a.h5", 2, "--output goes with --map"},
     };
     make_mistakes(mistakes, sizeof mistakes / sizeof *mistakes);
 }
@@ -285,31 +279,6 @@ TEST(wrong_settings_have_a_line)
         {"run text.cfg", 3, "text.cfg:5: 'modes' must be a whole number from 7 to 1000"},
     };
     make_mistakes(mistakes, sizeof mistakes / sizeof *mistakes);
-}
-
-TEST(slices_are_written)
-{
-    Result result;
-    write_text_ball("ball.xyz", &(Ball){600, 1, 0, -1, false, false});
-    run("info ball.xyz --slice y=0.25 -o slice.h5", &result);
-    assert_int_equal(result.code, 0);
-    assert_string_equal(result.out, "wrote slice.h5\n");
-    /* the circle in which the plane y = -1/2 cuts the unit ball, by its area and its middle */
-    static const char script[] =
-        "import h5py, math\n"
-        "with h5py.File('slice.h5') as f:\n"
-        "    d, a = f['distance'][:], f.attrs\n"
-        "    area = (d < 0).mean() * (a['high'] - a['low']).prod()\n"
-        "    assert a['kind'] == b'shapebench slice' and a['axis'] == 1, dict(a)\n"
-        "    assert abs(a['at'] + 0.5) < 0.02, a['at']\n"
-        "    assert abs(area / (math.pi * (1 - a['at']**2)) - 1) < 0.02, area\n"
-        "    middle = d[d.shape[0] // 2, d.shape[1] // 2]\n"
-        "    assert abs(middle + 0.5) < 0.1, middle\n";
-    write_text("look.py", script);
-    char command[512];
-    needs_python("h5py");
-    snprintf(command, sizeof command, "cd %s && /usr/bin/python3 look.py", folder);
-    assert_int_equal(system(command), 0);
 }
 
 /* Clouds of others: those with normals run, the others are refused. */

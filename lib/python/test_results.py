@@ -32,7 +32,6 @@ COMMANDS = {
     "claims.h5": ["claims", "--claims", "mine.cfg", "--claim", "mine", "--quick"],
     "beam.h5": ["calibrate", "--scene", "beam.cfg", "--w", "1:2", "--epsilon", "0", "--across", "1", "--aspect", "none",
                 "--step", "none"],
-    "slice.h5": ["info", "shape:block", "--slice", "z=0.5"],
     "map.h5": MAP,
     "still.vtkhdf": ["run", "a.cfg", "--frames", "3", "--fields", "speed,displacement"],
     "cut.vtkhdf": ["run", "beam-cut", "--frames", "25", "--steps", "20", "--particles", "300"],
@@ -91,11 +90,6 @@ class Results(unittest.TestCase):
         self.assertEqual(read["claims"]["statement"].tolist(), ["s"])
         self.assertEqual(read["curves"]["name"].tolist(), ["polar.cold-sweeps"])
         self.assertEqual(len(read["rows"]), 0)
-
-    def test_a_slice_is_an_array(self):
-        read = results.read(self.at("slice.h5"))
-        self.assertEqual((read.values["distance"].shape, read.values["axis"]), ((400, 400), 2))
-        self.assertLess(read.values["distance"].min(), 0)
 
     def test_a_map_has_groups_of_arrays(self):
         if "map.h5" not in COMMANDS:

@@ -64,7 +64,7 @@ class Table:
 
 @dataclass
 class Results:
-    """A file of measurements, a sweep, a calibration, claims, a slice or a map."""
+    """A file of measurements, a sweep, a calibration, claims or a map."""
 
     path: str
     kind: str  # "shapebench results", "shapebench sweep", ...

@@ -64,8 +64,7 @@ static void merge(const Oriented *sorted, long count, RefPoints *points)
     }
 }
 
-/* Squares of lengths, areas and single precision (bench/scene/slice.h) must hold what the points
- * span. */
+/* Squares of lengths, and areas, must hold what the points span. */
 static SmCode check_span(const RefPoints *points, const char *name, SmError *error)
 {
     double span = 0;
