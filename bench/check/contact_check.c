@@ -117,15 +117,17 @@ static bool alike(const Contacts *c, const SmContact *found, const RefContact *e
     return same;
 }
 
-/* Whether rounding decides: were the node elsewhere by no more than the tolerance, brute force
- * would say of it and the cell what the engine does (`found` NULL: no contact). */
+/* Whether rounding decides: were the node elsewhere by no more than the tolerance, also aslant, as
+ * from a corner where faces meet, brute force would say of it and the cell what the engine does
+ * (`found` NULL: no contact). */
 static bool undecided(const Contacts *c, const SmContact *found, long number, long cell)
 {
-    for (int move = 0; move < 6; move++) {
+    for (int move = 0; move < 125; move++) {
+        const int to[3] = {move % 5 - 2, move / 5 % 5 - 2, move / 25 - 2};
         double p[3];
         RefContact exact = {0};
-        memcpy(p, c->x[number], sizeof p);
-        p[move / 2] += (move % 2 ? 0.5 : -0.5) * BENCH_CONTACT_TOLERANCE;
+        for (int d = 0; d < 3; d++)
+            p[d] = c->x[number][d] + 0.125 * to[d] * BENCH_CONTACT_TOLERANCE;
         bool meet = ref_collide_at(c->twin, number, p, cell, &exact);
         if (found ? meet && alike(c, found, &exact) : !meet) return true;
     }
