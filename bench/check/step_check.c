@@ -681,7 +681,7 @@ bool bench_drift_verdict(const BenchDrift *drift, const char *precision, size_t 
         {drift->angular, most, "free steps it turns", "radians a step"},
         {drift->held, most / 5, "steps it drifts", "cells a step along the planes that hold it"},
         {drift->touching, most / 5, "steps it drifts", "cells a step with all that it touches"},
-        {drift->hung, most, "steps it turns", "radians a step about a particle that is held"}};
+        {drift->hung, most / 5, "steps it turns", "radians a step about a particle that is held"}};
     for (size_t i = 0; i < sizeof found / sizeof *found; i++) {
         if (found[i].is <= found[i].most) continue;
         snprintf(reason, size, "over %ld %s by %.3g %s; at most %g allowed", drift->steps,

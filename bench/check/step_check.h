@@ -50,8 +50,8 @@ void bench_check_obstacles(const BenchCheck *check, const BenchScene *scene,
 BenchDrift bench_drift(const BenchRunner *runner);
 
 /* May it be: at most 5e-9 each in "single", 1e-14 in "double" precision, a fifth of that along
- * planes and in contact, and as many times as much as pieces fly apart, because places are rounded
- * the more the larger they are? Else `reason` says why not. */
+ * planes, in contact and about what is held, and as many times as much as pieces fly apart, because
+ * places are rounded the more the larger they are? Else `reason` says why not. */
 bool bench_drift_verdict(const BenchDrift *drift, const char *precision, size_t size, char *reason);
 
 #endif

@@ -486,7 +486,7 @@ TEST(drift_has_bounds)
               {"single", "free steps", {.angular = 5e-9}},
               {"single", "along the planes", {.held = 1e-9}},
               {"single", "all that it touches", {.touching = 1e-9}},
-              {"single", "a particle that is held", {.hung = 5e-9}},
+              {"single", "a particle that is held", {.hung = 1e-9}},
               {"double", "free steps", {.linear = 1e-14}},
               {"double", "free steps", {.angular = 1e-14}},
               {"double", "along the planes", {.held = 2e-15}},
