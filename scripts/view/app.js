@@ -72,6 +72,7 @@ export class App {
         this.text = text;
         const [bounds, obstacles] = [this.engine.bounds(), this.engine.obstacles()];
         this.picture.setScene(bounds, obstacles);
+        [this.camera.floor] = this.picture.grounds;
         this.stage = findStage(bounds, obstacles);
         this.meters.forEach((meter) => (keep ? meter.begin() : meter.clear()));
         if (!keep) this.hands.forget();

@@ -66,19 +66,30 @@ export class Camera {
         return add(origin, direction, far);
     }
 
+    // Neither it nor its target goes under the floor: sooner it looks down more steeply.
+    rise() {
+        if (!this.floor) return;
+        const above = (place) => dot(this.floor.upward, add(place, this.floor.middle, -1));
+        this.target = add(this.target, this.floor.upward, Math.max(0, -above(this.target)));
+        while (this.pitch < 1.55 && above(this.eye()) < 0.02 * this.size) this.pitch += 0.01;
+    }
+
     orbit(right, up) {
         this.yaw -= right;
         this.pitch = Math.min(1.55, Math.max(-1.2, this.pitch - up));
+        this.rise();
     }
 
     // By shares of half the view's height.
     pan(right, up) {
         const axes = this.axes();
         this.target = add(add(this.target, axes.right, -right * this.reach()), axes.up, -up * this.reach());
+        this.rise();
     }
 
     zoom(factor) {
         this.distance = Math.min(40 * this.size, Math.max(0.2 * this.size, this.distance * factor));
+        this.rise();
     }
 
     // Looks at a box from the front so that it fills most of the view.

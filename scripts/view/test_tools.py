@@ -117,6 +117,13 @@ class Tools(PageCase):
             self.let_go()
         self.assertEqual(self.ask("return window.opened()"), opened)
 
+    def test_the_camera_stays_above_the_floor(self):
+        self.open("penguin")
+        above = "const { floor } = shapebench.camera; return shapebench.camera.eye()[1] - floor.middle[1]"
+        for move in ("orbit(0.1, 0.2)", "zoom(1.2)", "pan(0, 0.1)"):
+            self.ask(f"for (let i = 0; i < 40; i++) shapebench.camera.{move}")
+            self.assertGreater(self.ask(above), 0, move)
+
     def test_what_hands_do_ends_with_its_tool_and_its_scene(self):
         self.open("penguin")
         self.choose("wind")
