@@ -4,6 +4,7 @@
 
 #include <float.h>
 
+#include "../lib/engine/test_touching.h"
 #include "../lib/test_frame.h"
 #include "../lib/test_piece_sums.h"
 
@@ -144,36 +145,9 @@ TEST(test_instances)
 /* Cubes on the ground, side by side: rounding does not drive them apart. */
 TEST(what_touches_does_not_creep)
 {
-    SmVoxels voxels;
-    sm_voxels_init(&voxels, 6, 6, 6, 0.5);
-    for (int i = 0; i < 216; i++) sm_voxel_set(&voxels, i / 36, i / 6 % 6, i % 6);
-    sm_voxels_count(&voxels);
-    const double pose[2][3][4] = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}},
-                                  {{1, 0, 0, 5.95 * 0.5}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
-    const SmObstacle ground = {.kind = SM_PLANE, .b = {0, 1, 0}};
-    SmEngineParams params = {.w = 2,
-                             .h = 0.01,
-                             .damping = 0.1,
-                             .gravity = {0, -9.81, 0},
-                             .collide = {.bodies = true},
-                             .instances = 2,
-                             .instance_pose = pose};
-    SmEngine *engine;
-    assert_int_equal(engines[0]->create(&voxels, &params, &engine, NULL), SM_OK);
-    engines[0]->bound(engine, &(SmBoundary){.obstacle_count = 1, .obstacle = &ground});
-    long n = 2 * voxels.particle_count;
-    double(*x)[3] = triples(n), (*later)[3] = triples(n);
-    for (int step = 0; step < 4000; step++) {
-        engines[0]->step(engine, NULL);
-        if (step == 1999) engines[0]->get(engine, SM_POSITION, x);
-    }
-    engines[0]->get(engine, SM_POSITION, later);
-    double moved = field_difference(n, (const double(*)[3])x, (const double(*)[3])later);
+    SmEngineParams params = {.w = 2};
+    double moved = touching_moves(engines[0], params, 6, (double[]){2.975, 0, 0}, 4000);
     if (!(moved < 1e-4)) fail_msg("%g", moved);
-    free(x);
-    free(later);
-    engines[0]->destroy(engine);
-    sm_voxels_free(&voxels);
 }
 
 /* Reads one instance of a body, or a body alone, into `to`. */

@@ -1,5 +1,6 @@
 /* The octree behind the common interface, in both precisions: units, handles, obstacles, pushes,
  * instances, masses; what it refuses. */
+#include "../lib/engine/test_touching.h"
 #include "../lib/test_fields.h"
 #include "../lib/test_frame.h"
 #include "../reference/octree_goals.h"
@@ -281,38 +282,13 @@ TEST(instances_rest_in_their_poses)
 /* One block on another on the ground: the lower one carries the upper one. */
 TEST(stacks_stand)
 {
-    SmVoxels voxels;
-    sm_voxels_init(&voxels, 8, 8, 8, 0.5);
-    for (int i = 0; i < 512; i++) sm_voxel_set(&voxels, i / 64, i / 8 % 8, i % 8);
-    sm_voxels_count(&voxels);
-    const double pose[2][3][4] = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}},
-                                  {{1, 0, 0, 0}, {0, 1, 0, 4}, {0, 0, 1, 0}}};
-    const SmObstacle ground = {.kind = SM_PLANE, .b = {0, 1, 0}};
     for (int precision = 0; precision < 2; precision++) {
         OctOptions options = {.epsilon = 0.5};
         SmEngineParams params = usual(&options);
-        params.instances = 2;
-        params.instance_pose = pose;
-        params.damping = 0.1;
-        params.gravity[1] = -9.81;
-        params.collide = (SmCollideParams){.bodies = true, .friction = 0.5};
-        SmCounts counts;
-        SmEngine *engine = make(precision, &voxels, &params, &counts);
-        engines[precision]->bound(engine, &(SmBoundary){.obstacle_count = 1, .obstacle = &ground});
-        double(*x)[3] = triples(counts.particles), (*later)[3] = triples(counts.particles);
-        for (int step = 0; step < 4000; step++) {
-            engines[precision]->step(engine, NULL);
-            if (step == 1999) engines[precision]->get(engine, SM_POSITION, x);
-        }
-        engines[precision]->get(engine, SM_POSITION, later);
-        double moved =
-            field_difference(counts.particles, (const double(*)[3])x, (const double(*)[3])later);
+        params.collide.friction = 0.5;
+        double moved = touching_moves(engines[precision], params, 8, (double[]){0, 4, 0}, 4000);
         if (!(moved < 1e-3)) fail_msg("%g", moved);
-        free(x);
-        free(later);
-        engines[precision]->destroy(engine);
     }
-    sm_voxels_free(&voxels);
 }
 
 /* A plank of 64 base cells as the engine would choose them. */

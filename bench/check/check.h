@@ -29,8 +29,8 @@ typedef struct {
     RefTreeBody octree;
 } BenchCheck;
 
-/* What rounding makes of the momenta of a body left alone, or on planes (step_check.h); of the body
- * where it is largest. */
+/* What rounding makes of the momenta of a body left alone, on planes, in contact and held at a
+ * point (step_check.h); of the body where it is largest. */
 typedef struct {
     long steps;      /* that it was left alone; 0: not tried */
     double linear;   /* change of its centre's velocity: cells a step, each step */
