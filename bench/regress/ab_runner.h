@@ -34,7 +34,7 @@ typedef struct {
 } BenchAbRunner;
 
 enum { BENCH_TURNS = 4 }; /* of a round */
-#define BENCH_PROCESS_SECONDS 0.3
+#define BENCH_PROCESS_SECONDS 0.2
 
 /* Whose turn it is. */
 BenchBuild bench_ab_turn(int round, int turn);
