@@ -99,7 +99,7 @@ static void note_row(const BenchAbRunner *runner, const BenchTask *task, BenchBu
         memcpy(state->checked[build], row->state_hash, sizeof row->state_hash);
     if (!runner->program[BENCH_OLD] || state->repeats) return;
     double repeat = 2 * (row->steps + 2) * row->total_ms / 1e3;
-    state->repeats = (int)fmin(fmax(BENCH_PROCESS_SECONDS / repeat, 21), task->repeats);
+    state->repeats = (int)fmin(fmax(BENCH_PROCESS_SECONDS / repeat, 15), task->repeats);
 }
 
 static SmCode keep(Session *session, const BenchTask *task, State *state, BenchBuild build,

@@ -5,7 +5,7 @@
  * Each process is `PROGRAM tables --scene NAME ...`, which checks the scene before it times it. The
  * state that is timed is the same in all of a build's: those after its first are told its hash and
  * do not check it again (`tables --checked`, unless the build is too old for it). After the first
- * round both builds take no more repeats than fit in BENCH_PROCESS_SECONDS, but 21. */
+ * round both builds take no more repeats than fit in BENCH_PROCESS_SECONDS, but 15. */
 #ifndef BENCH_AB_RUNNER_H
 #define BENCH_AB_RUNNER_H
 

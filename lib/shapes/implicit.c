@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "../error.h"
+#include "../vector.h"
 #include "sine.h"
 
 static const double nowhere = 1e9; /* value of the empty solid */
@@ -32,7 +33,13 @@ void sm_primitive_turn(SmPrimitive *primitive, int axis, double angle)
 void sm_implicit_add(SmImplicit *implicit, const SmPrimitive *primitive)
 {
     sm_make_room(implicit->primitive, implicit->room, implicit->count + 1);
-    implicit->primitive[implicit->count++] = *primitive;
+    SmPrimitive *f = &implicit->primitive[implicit->count++];
+    double ba[3];
+    *f = *primitive;
+    sm_subtract(f->tip, f->centre, ba);
+    f->length = sqrt(sm_dot(ba, ba));
+    f->sine = (f->size[0] - f->size[1]) / f->length;
+    f->cosine = sqrt(1 - f->sine * f->sine);
 }
 
 void sm_implicit_free(SmImplicit *implicit)
@@ -85,21 +92,17 @@ static double ellipsoid(int n, const double *p, const double *r)
  * is the line tangent to both circles. */
 static double cone(const SmPrimitive *f, const double p[3])
 {
-    double ra = f->size[0], rb = f->size[1], ba[3], pa[3], along = 0, l2 = 0;
+    double ra = f->size[0], rb = f->size[1], l = f->length, pa[3], along = 0;
     for (int i = 0; i < 3; i++) {
-        ba[i] = f->tip[i] - f->centre[i];
         pa[i] = p[i] - f->centre[i];
-        l2 += ba[i] * ba[i];
-        along += pa[i] * ba[i];
+        along += pa[i] * (f->tip[i] - f->centre[i]);
     }
-    double rr = ra - rb, l = sqrt(l2);
-    if (l <= fabs(rr)) { /* one ball holds the other */
-        const double *c = rr > 0 ? f->centre : f->tip;
+    if (l <= fabs(ra - rb)) { /* one ball holds the other */
+        const double *c = ra - rb > 0 ? f->centre : f->tip;
         return length3(p[0] - c[0], p[1] - c[1], p[2] - c[2]) - fmax(ra, rb);
     }
-    double y = along / l;
+    double y = along / l, sine = f->sine, cosine = f->cosine;
     double x = sqrt(fmax(0, pa[0] * pa[0] + pa[1] * pa[1] + pa[2] * pa[2] - y * y));
-    double sine = rr / l, cosine = sqrt(1 - sine * sine);
     double foot = y * cosine - x * sine; /* scaled position along the side */
     if (foot < 0) return length2(x, y) - ra;
     if (foot > l * cosine) return length2(x, y - l) - rb;

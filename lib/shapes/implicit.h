@@ -26,7 +26,8 @@ typedef struct {
     int cut;      /* 1: taken away instead of added */
     double blend; /* rounding of the seam, length */
     double centre[3];
-    double tip[3]; /* SM_CONE only */
+    double tip[3];               /* SM_CONE only */
+    double length, sine, cosine; /* of its axis and its side, by sm_implicit_add() */
     double size[3];
     int chain;       /* neighbours of one chain other than 0 are joined sharply, then blended once;
                         they share blend and cut */
