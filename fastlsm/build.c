@@ -81,7 +81,7 @@ static KeyedRegion *room_for_keys(const Lsm *lsm, const Before *before, long *co
 
 /* The rows of p's region, unless it is a whole cube and `cubes` is false, and its key, unless it
  * is. Returns how many members it has. */
-static int find_region(const Lsm *lsm, long p, bool cubes, uint64_t *rows, KeyedRegion *keyed,
+static int find_region(const Lsm *lsm, long p, bool cubes, LsmRow *rows, KeyedRegion *keyed,
                        bool *whole, bool *simple)
 {
     const LsmLattice *l = &lsm->lattice;
@@ -103,7 +103,7 @@ long lsm_unique(Lsm *lsm)
 #pragma omp parallel for schedule(dynamic) num_threads(sm_team_for(lsm->lattice.count))
     for (int z = 0; z < planes; z++) {
         KeyedRegion *own = keyed + before[z].particles - before[z].whole;
-        uint64_t rows[LSM_MAX_SIDE * LSM_MAX_SIDE];
+        LsmRow rows[LSM_MAX_SIDE * LSM_MAX_SIDE];
         bool whole, simple;
         for (long p = before[z].particles; p < before[z + 1].particles; p++) {
             find_region(lsm, p, false, rows, own, &whole, &simple);
@@ -116,7 +116,7 @@ long lsm_unique(Lsm *lsm)
 
 /* Regions that are found at once, before they are listed one after the other. */
 typedef struct {
-    uint64_t *rows; /* [count][side^2] */
+    LsmRow *rows; /* [count][side^2] */
     KeyedRegion *keyed;
     bool *whole;
     long count;
@@ -137,7 +137,7 @@ static void find_batch(Lsm *lsm, Batch *batch, long first, long end, bool *liste
 #pragma omp parallel for schedule(static) num_threads(sm_team_for((end - first) * area))
     for (long p = first; p < end; p++) {
         bool simple;
-        uint64_t *rows = batch->rows + (p - first) * area;
+        LsmRow *rows = batch->rows + (p - first) * area;
         lsm->members[p] = find_region(lsm, p, !lsm->box, rows, &batch->keyed[p - first],
                                       &batch->whole[p - first], &simple);
         listed[p] = !lsm->box || (!simple && !lsm_blocks_regular(lsm, p, rows));

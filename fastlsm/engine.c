@@ -653,15 +653,15 @@ static Member *find_members(const SmEngine *e, long number, long *count)
     const Lsm *lsm = e->lsm;
     long centre = inner_of(e, number), first = number / e->count * e->count;
     const int *c = lsm->lattice.coord[centre];
-    uint64_t rows[LSM_MAX_SIDE * LSM_MAX_SIDE];
+    LsmRow rows[LSM_MAX_SIDE * LSM_MAX_SIDE];
     long most = lsm_region_rows(&lsm->lattice, &lsm->interior, centre, rows);
     int *outer = outer_numbers(e);
     Member *all = sm_alloc((size_t)most, sizeof *all);
     *count = 0;
     for (int row = 0; row < lsm->side * lsm->side; row++)
-        for (uint64_t rest = rows[row]; rest; rest &= rest - 1) {
+        for (LsmRow rest = rows[row]; rest; rest &= rest - 1) {
             long p =
-                lsm_lattice_find(&lsm->lattice, c[0] - lsm->w + __builtin_ctzll(rest),
+                lsm_lattice_find(&lsm->lattice, c[0] - lsm->w + lsm_row_first(rest),
                                  c[1] - lsm->w + row % lsm->side, c[2] - lsm->w + row / lsm->side);
             all[(*count)++] = (Member){first + outer[p], row};
         }

@@ -39,7 +39,7 @@ typedef struct {
     List changed; /* regions that have */
     List touched; /* regions that hold the centre of a changed one: m~ changed */
     int *member;  /* [side^3] */
-    uint64_t *rows;
+    LsmRow *rows;
 } Change;
 
 static void append(List *list, long p)
@@ -86,13 +86,13 @@ static void note_end(Change *change, long p)
 }
 
 /* The particles of p's region, from its rows; returns how many. */
-static int list_members(const Lsm *lsm, long p, const uint64_t *rows, int *member)
+static int list_members(const Lsm *lsm, long p, const LsmRow *rows, int *member)
 {
     const int *c = lsm->lattice.coord[p];
     int count = 0, w = lsm->w, side = lsm->side;
     for (int row = 0; row < side * side; row++)
-        for (uint64_t rest = rows[row]; rest; rest &= rest - 1)
-            member[count++] = (int)lsm_lattice_find(&lsm->lattice, c[0] - w + __builtin_ctzll(rest),
+        for (LsmRow rest = rows[row]; rest; rest &= rest - 1)
+            member[count++] = (int)lsm_lattice_find(&lsm->lattice, c[0] - w + lsm_row_first(rest),
                                                     c[1] - w + row % side, c[2] - w + row / side);
     return count;
 }
@@ -112,7 +112,7 @@ static int add_region(Lsm *lsm)
 }
 
 /* Lists for the region of p that has changed, where it has or now needs them. False: no room. */
-static bool revise_lists(Lsm *lsm, long p, const uint64_t *rows, int count, const int *member)
+static bool revise_lists(Lsm *lsm, long p, const LsmRow *rows, int count, const int *member)
 {
     int slot = lsm->slot[p], *region = &lsm->block_region[slot];
     if (*region < 0) {
@@ -229,7 +229,7 @@ long lsm_break(Lsm *lsm, long count, const LsmLink *link)
     size_t side = (size_t)lsm->side;
     Change change = {.lsm = lsm,
                      .member = sm_alloc(side * side * side, sizeof(int)),
-                     .rows = sm_alloc(side * side, sizeof(uint64_t))};
+                     .rows = sm_alloc(side * side, sizeof(LsmRow))};
     break_links(&change, count, link);
     long work = lsm->lattice.count;
     if (revise_near(&change)) {

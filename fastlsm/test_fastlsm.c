@@ -49,8 +49,8 @@ TEST(test_goals)
     }
 }
 
-/* Wide regions in list form, whose sums are running: random shapes; bodies of several layers; a
- * particle so heavy that its rounding must not stay behind in a sum. */
+/* Wide regions, up to the widest, in list form, whose sums are running: random shapes; bodies of
+ * several layers; a particle so heavy that its rounding must not stay behind in a sum. */
 TEST(test_wide_lists)
 {
     unsigned seed = 8;
@@ -64,12 +64,13 @@ TEST(test_wide_lists)
     }
     for (int trial = 0; trial < 8; trial++) {
         Body body;
-        const int size[3] = {trial < 4 ? 7 : 64, 9, trial < 4 ? 128 : 5};
+        const int size[3] = {trial < 4 ? 7 : 70, 9, trial < 4 ? 128 : 5};
         random_block(&seed, size, 0.5, trial % 2 ? 0.8 : 1, &body.voxels);
         body_arrays(&body);
         random_deformation(&seed, 0.5, 0.3, body.n, (const double(*)[3])body.x0, body.x);
-        check_goals(trial / 2 % 2, SM_SUM_FAST, SM_POLAR_FAST, SM_LAYOUT_LISTS, 4 + trial % 3,
-                    &body);
+        check_goals(trial / 2 % 2, SM_SUM_FAST, SM_POLAR_FAST,
+                    trial == 6 ? SM_LAYOUT_BLOCKS : SM_LAYOUT_LISTS,
+                    trial > 4 ? SM_MOST_W : 4 + trial % 3, &body);
         body_free(&body);
     }
 }

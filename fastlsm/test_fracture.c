@@ -107,16 +107,16 @@ static void choose_breaks(unsigned *seed, const LsmLattice *l, Breaks *breaks)
 /* Regions, their sizes and how many differ, beside the reference. */
 static void assert_regions(Lsm *lsm, const RefRegions *regions)
 {
-    uint64_t rows[LSM_MAX_SIDE * LSM_MAX_SIDE];
+    LsmRow rows[LSM_MAX_SIDE * LSM_MAX_SIDE];
     const LsmLattice *l = &lsm->lattice;
     for (long p = 0; p < l->count; p++) {
         long at = regions->start[p], count = regions->start[p + 1] - at;
         assert_int_equal(lsm_region_rows(l, &lsm->interior, p, rows), count);
         assert_int_equal(lsm->members[p], count);
         for (int row = 0; row < lsm->side * lsm->side; row++)
-            for (uint64_t rest = rows[row]; rest; rest &= rest - 1) {
+            for (LsmRow rest = rows[row]; rest; rest &= rest - 1) {
                 const int *c = l->coord[p];
-                long member = lsm_lattice_find(l, c[0] - lsm->w + __builtin_ctzll(rest),
+                long member = lsm_lattice_find(l, c[0] - lsm->w + lsm_row_first(rest),
                                                c[1] - lsm->w + row % lsm->side,
                                                c[2] - lsm->w + row / lsm->side);
                 assert_int_equal(member, regions->member[at++]);

@@ -14,7 +14,7 @@ typedef struct {
     LsmLattice lattice;
     LsmInterior interior;
     int w, side; /* side = 2w + 1 */
-    uint64_t rows[LSM_MAX_SIDE * LSM_MAX_SIDE];
+    LsmRow rows[LSM_MAX_SIDE * LSM_MAX_SIDE];
 } Regions;
 
 static void open_regions(const SmVoxels *voxels, int w, Regions *of)
@@ -138,7 +138,8 @@ SmCode bench_structure_body_additions(const BenchExperiment *of, SmError *error)
 
 /* A bar or plate around a lattice index, and what it holds. */
 typedef struct {
-    uint64_t index, members;
+    uint64_t index;
+    LsmRow members; /* of a plate a hash */
 } Subsum;
 
 static int by_index(const void *a, const void *b)
@@ -149,13 +150,14 @@ static int by_index(const void *a, const void *b)
 }
 
 /* Rows mixed into one number, by FNV-1a: 0 only where all of them are. */
-static uint64_t mixed(const uint64_t *row, int count)
+static uint64_t mixed(const LsmRow *row, int count)
 {
-    uint64_t hash = 14695981039346656037U, any = 0;
+    uint64_t hash = 14695981039346656037U;
+    LsmRow any = 0;
     for (int i = 0; i < count; i++) {
         any |= row[i];
         for (int byte = 0; byte < 8; byte++)
-            hash = (hash ^ (row[i] >> (8 * byte) & 255)) * 1099511628211U;
+            hash = (hash ^ ((uint64_t)row[i] >> (8 * byte) & 255)) * 1099511628211U;
     }
     return any ? hash : 0;
 }
@@ -166,7 +168,7 @@ static int subsums_of(const Regions *of, long r, bool plates, Subsum *found)
     const int *at = of->lattice.coord[r], *size = of->lattice.size;
     int side = of->side, count = 0, each = plates ? side : 1;
     for (int row = 0; row < side * side; row += each) {
-        uint64_t members = plates ? mixed(of->rows + row, side) : of->rows[row];
+        LsmRow members = plates ? mixed(of->rows + row, side) : of->rows[row];
         if (!members) continue;
         long z = at[2] + row / side - of->w, y = plates ? at[1] : at[1] + row % side - of->w;
         found[count++] = (Subsum){(uint64_t)((z * size[1] + y) * size[0] + at[0]), members};

@@ -152,7 +152,7 @@ TEST(defaults_are_listed_as_they_are)
     fclose(file);
     assert_non_null(
         strstr(text, "\nh: a number from 1e-09 to 10, default 0.01\n    run --h: Time"));
-    assert_non_null(strstr(text, "\nw: a whole number from 1 to 31, default 2\n"));
+    assert_non_null(strstr(text, "\nw: a whole number from 1 to 32, default 2\n"));
     assert_non_null(strstr(text, "\nfill: one of \"solid|shell\", default \"solid\"\n"));
     assert_non_null(strstr(text, "\n        poisson: a number from -0.99 to 0.49, default 0.3\n"));
     assert_non_null(
@@ -181,8 +181,8 @@ TEST(errors_name_file_line_and_remedy)
 {
     static const Mistake cases[] = {
         {BODY "damping_k = 1;", "dir/my.cfg:3: unknown setting 'damping_k'; known: title, paper,"},
-        {BODY "w = 2.5;", "dir/my.cfg:3: 'w' must be a whole number from 1 to 31"},
-        {BODY "w = 0;", "dir/my.cfg:3: 'w' must be a whole number from 1 to 31"},
+        {BODY "w = 2.5;", "dir/my.cfg:3: 'w' must be a whole number from 1 to 32"},
+        {BODY "w = 0;", "dir/my.cfg:3: 'w' must be a whole number from 1 to 32"},
         {BODY "\n\nw = \"2\";", "dir/my.cfg:5: 'w' must be"},
         {BODY "h = 0;", "dir/my.cfg:3: 'h' must be a number from 1e-09 to 10"},
         {BODY "h = 1e400;", "dir/my.cfg:3: 'h' must be a number"},

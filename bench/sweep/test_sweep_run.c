@@ -205,7 +205,7 @@ TEST(mistakes_are_one_line)
         {"sweep --repeats 65", 2, "--repeats: '65'"},
         {"sweep --scene nothing", 2, "neither a built-in scene"},
         {"sweep --mesh nothing.obj", 3, "nothing.obj"},
-        {"sweep --w 31:32", 2, "--w: 32 is no half-width of fastlsm"},
+        {"sweep --w 32:33", 2, "--w: 33 is no half-width of fastlsm"},
         {"sweep missing.h5", 3, "missing.h5: no such file"},
         {"sweep a.h5 b.h5", 2, "what is 'b.h5'?"},
         {"sweep whole.h5 --w 3", 2, "whole.h5 alone is shown as it is"},

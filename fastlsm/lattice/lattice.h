@@ -18,6 +18,26 @@ enum {
     LSM_FULL = (1 << 27) - 1 /* a particle linked to all of its ring */
 };
 
+/* A row of a window: bit a + w for what is at x + a, a from -w to w. */
+__extension__ typedef unsigned __int128 LsmRow;
+
+static inline int lsm_row_count(LsmRow row)
+{
+    return sm_count_bits((uint64_t)row) + sm_count_bits((uint64_t)(row >> 64));
+}
+
+/* The first bit of a row that has one. */
+static inline int lsm_row_first(LsmRow row)
+{
+    return (uint64_t)row ? __builtin_ctzll((uint64_t)row)
+                         : 64 + __builtin_ctzll((uint64_t)(row >> 64));
+}
+
+static inline LsmRow lsm_row_full(int w)
+{
+    return ((LsmRow)1 << (2 * w + 1)) - 1;
+}
+
 typedef struct {
     long count;      /* particles */
     int size[3];     /* lattice vertices along x, y, z */
@@ -61,16 +81,16 @@ static inline long lsm_lattice_plane(const LsmLattice *l, int z)
                           : l->count;
 }
 
-/* Bits x - w .. x + w (bit a + w) of a bitmap's row (y, z); zero outside the box. */
-static inline uint64_t lsm_window(const LsmLattice *l, const uint64_t *bitmap, int x, int y, int z,
-                                  int w)
+/* Places x - w .. x + w of a bitmap's row (y, z); zero outside the box. */
+static inline LsmRow lsm_window(const LsmLattice *l, const uint64_t *bitmap, int x, int y, int z,
+                                int w)
 {
     if (y < 0 || z < 0 || y >= l->size[1] || z >= l->size[2]) return 0;
     const uint64_t *row = bitmap + ((size_t)z * (size_t)l->size[1] + (size_t)y) * (size_t)l->words;
     int low = x - w, word = low >> 6, shift = low & 63; /* low may be negative: word -1 */
-    uint64_t bits = word >= 0 && word < l->words ? row[word] >> shift : 0;
-    if (shift && word + 1 < l->words) bits |= row[word + 1] << (64 - shift);
-    return bits & (((uint64_t)1 << (2 * w + 1)) - 1);
+    LsmRow bits = word >= 0 && word < l->words ? row[word] : 0;
+    if (word + 1 < l->words) bits |= (LsmRow)row[word + 1] << 64;
+    return bits >> shift & lsm_row_full(w);
 }
 
 #endif

@@ -175,7 +175,7 @@ static bool give_back(LsmRowStore *store, int layer, int r, int *row)
 
 /* The plate of centre (x, y) in plane z with these members (any): its row, or -1 for no room. */
 static int add_plate(LsmListAllocator *allocator, const LsmLists *lists, const LsmLattice *l,
-                     const int *slot, const int at[3], const uint64_t *rows)
+                     const int *slot, const int at[3], const LsmRow *rows)
 {
     LsmRowStore *bars = &allocator->bars;
     int side = bars->side, z = at[2], layer = allocator->layer[z];
@@ -205,12 +205,12 @@ static void drop_plate(LsmListAllocator *allocator, int z, int plate)
 }
 
 bool lsm_allocator_revise(LsmListAllocator *allocator, LsmLists *lists, const LsmLattice *l,
-                          const int *slot, long p, long region, const uint64_t *rows)
+                          const int *slot, long p, long region, const LsmRow *rows)
 {
     int side = lists->side, plate[LSM_MAX_SIDE], *old = lists->region + region * side;
     for (int i = 0; i < side; i++) {
         int at[3] = {l->coord[p][0], l->coord[p][1], l->coord[p][2] + i - side / 2};
-        uint64_t any = 0;
+        LsmRow any = 0;
         for (int b = 0; b < side; b++) any |= rows[i * side + b];
         int r = any ? add_plate(allocator, lists, l, slot, at, rows + i * side) : 0;
         if (r < 0) return false;

@@ -41,6 +41,6 @@ void lsm_allocator_free(LsmListAllocator *allocator);
  * that row listed. O((2w+1)^2 + members). False when a layer has no row left: the lists are then
  * spoilt and must be built anew, with more to spare. */
 bool lsm_allocator_revise(LsmListAllocator *allocator, LsmLists *lists, const LsmLattice *lattice,
-                          const int *slot, long p, long region, const uint64_t *rows);
+                          const int *slot, long p, long region, const LsmRow *rows);
 
 #endif

@@ -42,7 +42,7 @@ static int ring_count(const LsmLattice *l, const int c[3])
     int count = 0;
     for (int row = 0; row < 9; row++)
         count +=
-            sm_count_bits(lsm_window(l, l->bits, c[0], c[1] + row % 3 - 1, c[2] + row / 3 - 1, 1));
+            lsm_row_count(lsm_window(l, l->bits, c[0], c[1] + row % 3 - 1, c[2] + row / 3 - 1, 1));
     return count;
 }
 
@@ -81,107 +81,30 @@ void lsm_interior_free(LsmInterior *interior)
     memset(interior, 0, sizeof *interior);
 }
 
-/* Adds the ring of one particle at window place (a, b, c) to `next`. */
-static void add_ring(uint32_t link, int a, long row, int side, uint64_t *next)
-{
-    for (int ring = 0; ring < 9; ring++) {
-        uint64_t three = link >> (3 * ring) & 7;
-        next[row + (ring / 3 - 1) * side + ring % 3 - 1] |= three << (a - 1);
-    }
-}
+#define Row         uint64_t
+#define SIDE        63
+#define NAMED(name) name##_narrow
+#include "region_search.h"
+#undef Row
+#undef SIDE
+#undef NAMED
+#define Row         LsmRow
+#define SIDE        LSM_MAX_SIDE
+#define NAMED(name) name##_wide
+#include "region_search.h"
 
-/* One breadth-first step from `front`, whose members lie within `reach` of the centre. Particles
- * linked to all of their ring spread word-parallel, also to where there is no particle; the others
- * link by link. */
-static void spread(const LsmLattice *l, const uint64_t *complete, const int centre[3], int w,
-                   int reach, const uint64_t *front, uint64_t *next)
-{
-    int side = 2 * w + 1;
-    for (int c = -reach; c <= reach; c++)
-        for (int b = -reach; b <= reach; b++) {
-            long row = (long)(c + w) * side + b + w;
-            if (!front[row]) continue;
-            uint64_t whole =
-                front[row] & lsm_window(l, complete, centre[0], centre[1] + b, centre[2] + c, w);
-            if (whole)
-                for (int ring = 0; ring < 9; ring++)
-                    next[row + (ring / 3 - 1) * side + ring % 3 - 1] |=
-                        whole << 1 | whole | whole >> 1;
-            for (uint64_t rest = front[row] & ~whole; rest; rest &= rest - 1) {
-                int a = __builtin_ctzll(rest);
-                long p = lsm_lattice_find(l, centre[0] + a - w, centre[1] + b, centre[2] + c);
-                add_ring(l->link[p], a, row, side, next);
-            }
-        }
-}
-
-/* Is the material of the window one box without a broken or missing link? Then all of it is within
- * reach: this is the usual case at the faces, edges and corners of a solid. */
-static bool one_box(const LsmLattice *l, const LsmInterior *interior, const int centre[3],
-                    const uint64_t *material)
-{
-    int w = interior->w, side = 2 * w + 1, low[2] = {side, side}, high[2] = {-1, -1}, filled = 0;
-    uint64_t run = material[w * side + w], ends = run & -run;
-    if (run & (run + ends)) return false; /* more than one run */
-    for (int row = 0; row < side * side; row++) {
-        if (!material[row]) continue;
-        int at[2] = {row % side, row / side};
-        if (material[row] != run) return false;
-        if (lsm_window(l, interior->complete, centre[0], centre[1] + at[0] - w,
-                       centre[2] + at[1] - w, w) != run)
-            return false;
-        for (int d = 0; d < 2; d++) {
-            low[d] = at[d] < low[d] ? at[d] : low[d];
-            high[d] = at[d] > high[d] ? at[d] : high[d];
-        }
-        filled++;
-    }
-    return filled == (high[0] - low[0] + 1) * (high[1] - low[1] + 1);
-}
-
-static void search(const LsmLattice *l, const LsmInterior *interior, const int centre[3],
-                   const uint64_t *material, uint64_t *rows)
-{
-    int w = interior->w, side = 2 * w + 1, area = side * side;
-    uint64_t front[LSM_MAX_SIDE * LSM_MAX_SIDE], next[LSM_MAX_SIDE * LSM_MAX_SIDE];
-    memset(rows, 0, (size_t)area * sizeof *rows);
-    memset(front, 0, (size_t)area * sizeof *front);
-    front[w * side + w] = rows[w * side + w] = (uint64_t)1 << w;
-    for (int step = 0; step < w; step++) {
-        memset(next, 0, (size_t)area * sizeof *next);
-        spread(l, interior->complete, centre, w, step, front, next);
-        for (int row = 0; row < area; row++) {
-            front[row] = next[row] & material[row] & ~rows[row];
-            rows[row] |= front[row];
-        }
-    }
-}
-
-int lsm_region_find(const LsmLattice *l, const LsmInterior *interior, long r, uint64_t *rows,
+int lsm_region_find(const LsmLattice *l, const LsmInterior *interior, long r, LsmRow *rows,
                     bool *simple)
 {
-    int w = interior->w, side = 2 * w + 1, area = side * side, count = 0;
-    const int *centre = l->coord[r];
+    int w = interior->w, area = (2 * w + 1) * (2 * w + 1);
+    if (!lsm_bit(l, interior->interior, l->coord[r]))
+        return (2 * w + 1 > 64 ? find_wide : find_narrow)(l, interior, r, rows, simple);
     *simple = true;
-    if (lsm_bit(l, interior->interior, centre)) {
-        for (int row = 0; row < area; row++) rows[row] = ((uint64_t)1 << side) - 1;
-        return side * area;
-    }
-    uint64_t material[LSM_MAX_SIDE * LSM_MAX_SIDE];
-    memset(material, 0, (size_t)area * sizeof *material);
-    for (int row = 0; row < area; row++)
-        material[row] = lsm_window(l, l->bits, centre[0], centre[1] + row % side - w,
-                                   centre[2] + row / side - w, w);
-    *simple = one_box(l, interior, centre, material);
-    if (*simple)
-        memcpy(rows, material, (size_t)area * sizeof *rows);
-    else
-        search(l, interior, centre, material, rows);
-    for (int row = 0; row < area; row++) count += sm_count_bits(rows[row]);
-    return count;
+    for (int row = 0; row < area; row++) rows[row] = lsm_row_full(w);
+    return (2 * w + 1) * area;
 }
 
-int lsm_region_rows(const LsmLattice *l, const LsmInterior *interior, long r, uint64_t *rows)
+int lsm_region_rows(const LsmLattice *l, const LsmInterior *interior, long r, LsmRow *rows)
 {
     bool simple;
     return lsm_region_find(l, interior, r, rows, &simple);
@@ -196,7 +119,7 @@ static uint64_t mix(uint64_t h) /* the finaliser of MurmurHash3 */
     return h ^ h >> 33;
 }
 
-LsmKey lsm_region_key(const LsmLattice *l, int w, long r, const uint64_t *rows)
+LsmKey lsm_region_key(const LsmLattice *l, int w, long r, const LsmRow *rows)
 {
     const int *c = l->coord[r];
     int side = 2 * w + 1;
@@ -205,11 +128,12 @@ LsmKey lsm_region_key(const LsmLattice *l, int w, long r, const uint64_t *rows)
         next = row + 1;
         if (!rows[row]) continue;
         while (next % side && rows[next] == rows[row]) next++; /* equal rows along y go together */
-        int low = __builtin_ctzll(rows[row]);
+        int low = lsm_row_first(rows[row]);
         uint64_t place = ((uint64_t)(c[2] + row / side) << 42) ^
                          ((uint64_t)(c[1] + row % side) << 21) ^ (uint64_t)(c[0] + low);
-        uint64_t h = mix(mix(place) ^ rows[row] >> low);
-        h = mix(h + (uint64_t)(next - row));
+        LsmRow bits = rows[row] >> low;
+        uint64_t h = mix(mix(place) ^ (uint64_t)bits);
+        h = mix(h + (uint64_t)(next - row) + ((uint64_t)(bits >> 64) << 32));
         key.low += h;
         key.high += mix(h ^ 0x9e3779b97f4a7c15ull);
     }

@@ -31,10 +31,10 @@ static inline bool lsm_bit(const LsmLattice *l, const uint64_t *bitmap, const in
 
 /* Rows of particle r's region, by breadth-first search. `rows` is [(2w+1)^2]. Returns how many
  * members it has. O(w^2) for an interior particle, O(w^3) else. */
-int lsm_region_rows(const LsmLattice *lattice, const LsmInterior *interior, long r, uint64_t *rows);
+int lsm_region_rows(const LsmLattice *lattice, const LsmInterior *interior, long r, LsmRow *rows);
 
 /* The same. `simple`: all material of the window is in reach and fills a box. */
-int lsm_region_find(const LsmLattice *lattice, const LsmInterior *interior, long r, uint64_t *rows,
+int lsm_region_find(const LsmLattice *lattice, const LsmInterior *interior, long r, LsmRow *rows,
                     bool *simple);
 
 /* 128 bits that two regions share exactly when they hold the same particles (but for a chance of
@@ -42,6 +42,6 @@ int lsm_region_find(const LsmLattice *lattice, const LsmInterior *interior, long
 typedef struct {
     uint64_t low, high;
 } LsmKey;
-LsmKey lsm_region_key(const LsmLattice *lattice, int w, long r, const uint64_t *rows);
+LsmKey lsm_region_key(const LsmLattice *lattice, int w, long r, const LsmRow *rows);
 
 #endif

@@ -72,24 +72,23 @@ struct LsmListsBuilder {
     const LsmLattice *lattice;
     const int *slot;
     int w, side;
-    uint64_t full; /* all bits of a bar */
     Pool bars, plates;
     /* made when the first region is added: */
-    int *full_plate;       /* [particles] the whole plate around it, 0: not met yet */
-    int *recent_bar;       /* [particles] the last bar around it: neighbours mostly share it */
-    uint64_t *recent_bits; /* [particles] its members, 0: none yet */
-    int *region;           /* [region_room][side] */
+    int *full_plate;     /* [particles] the whole plate around it, 0: not met yet */
+    int *recent_bar;     /* [particles] the last bar around it: neighbours mostly share it */
+    LsmRow *recent_bits; /* [particles] its members, 0: none yet */
+    int *region;         /* [region_room][side] */
     long region_count, region_room;
 };
 
 void lsm_lists_bar(const LsmLattice *l, const int *slot, int slot_shift, int w, int x, int y, int z,
-                   uint64_t bits, int *row)
+                   LsmRow bits, int *row)
 {
     memset(row, 0, (size_t)(2 * w + 1) * sizeof *row);
-    int last = __builtin_ctzll(bits);
+    int last = lsm_row_first(bits);
     long p = lsm_lattice_find(l, x - w + last, y, z);
-    for (uint64_t rest = bits; rest; rest &= rest - 1) {
-        int a = __builtin_ctzll(rest);
+    for (LsmRow rest = bits; rest; rest &= rest - 1) {
+        int a = lsm_row_first(rest);
         if (a != last + 1 && a != last)
             p = lsm_lattice_find(l, x - w + a, y, z);
         else
@@ -100,7 +99,7 @@ void lsm_lists_bar(const LsmLattice *l, const int *slot, int slot_shift, int w, 
 }
 
 /* The same, stored; 0 when it has no members. */
-static int add_bar(LsmListsBuilder *b, int x, int y, int z, uint64_t bits)
+static int add_bar(LsmListsBuilder *b, int x, int y, int z, LsmRow bits)
 {
     int row[LSM_MAX_SIDE + 2];
     if (!bits) return 0;
@@ -117,16 +116,16 @@ static int add_bar(LsmListsBuilder *b, int x, int y, int z, uint64_t bits)
 
 /* The plate of centre (x, y) in plane z. Its bars' keys tell centres apart along x; the place of a
  * bar tells them apart along y. */
-static int add_plate(LsmListsBuilder *b, int x, int y, int z, const uint64_t *rows)
+static int add_plate(LsmListsBuilder *b, int x, int y, int z, const LsmRow *rows)
 {
     int row[LSM_MAX_SIDE + 2] = {0}, *full = NULL;
-    uint64_t any = 0, all = b->full;
+    LsmRow any = 0, all = lsm_row_full(b->w);
     for (int i = 0; i < b->side; i++) {
         any |= rows[i];
         all &= rows[i];
     }
     if (!any) return 0;
-    if (all == b->full) full = &b->full_plate[lsm_lattice_find(b->lattice, x, y, z)];
+    if (all == lsm_row_full(b->w)) full = &b->full_plate[lsm_lattice_find(b->lattice, x, y, z)];
     if (full && *full) return *full;
     for (int i = 0; i < b->side; i++) row[i] = add_bar(b, x, y + i - b->w, z, rows[i]);
     row[b->side] = y;
@@ -181,13 +180,12 @@ LsmListsBuilder *lsm_lists_open(const LsmLattice *l, const int *slot, int w)
 {
     LsmListsBuilder *b = sm_alloc(1, sizeof *b);
     *b = (LsmListsBuilder){.lattice = l, .slot = slot, .w = w, .side = 2 * w + 1};
-    b->full = ((uint64_t)1 << b->side) - 1;
     pool_init(&b->bars, b->side + 2);
     pool_init(&b->plates, b->side + 2);
     return b;
 }
 
-void lsm_lists_add(LsmListsBuilder *b, long p, const uint64_t *rows)
+void lsm_lists_add(LsmListsBuilder *b, long p, const LsmRow *rows)
 {
     if (!b->recent_bar) {
         b->recent_bar = sm_alloc((size_t)b->lattice->count, sizeof *b->recent_bar);

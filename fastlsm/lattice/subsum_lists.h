@@ -57,7 +57,7 @@ LsmListsBuilder *lsm_lists_open(const LsmLattice *lattice, const int *slot, int 
 
 /* Lists the members `rows` (region.h) of particle p as the next row of the regions. O(w^2) for a
  * whole cube, O(w^2 + members) else. */
-void lsm_lists_add(LsmListsBuilder *builder, long p, const uint64_t *rows);
+void lsm_lists_add(LsmListsBuilder *builder, long p, const LsmRow *rows);
 void lsm_lists_close(LsmListsBuilder *builder, LsmLists *lists);
 void lsm_lists_free(LsmLists *lists);
 
@@ -67,7 +67,7 @@ void lsm_lists_place(LsmLists *lists, int *bar_shift, int *plate_shift, int *slo
 
 /* The bar of centre column x in row (y, z) whose members are `bits` (not 0): [2w+1] names. */
 void lsm_lists_bar(const LsmLattice *lattice, const int *slot, int slot_shift, int w, int x, int y,
-                   int z, uint64_t bits, int *row);
+                   int z, LsmRow bits, int *row);
 
 uint64_t lsm_lists_hash(const int *row, int width);
 

@@ -15,9 +15,9 @@ typedef struct {
     LsmLattice lattice;
     LsmInterior interior;
     int w, side, layers;
-    int *slot, *layer_plane;  /* [particles], [layers + 1] */
-    long regions, *centre;    /* [regions] particle */
-    uint64_t (*rows)[WINDOW]; /* [regions] */
+    int *slot, *layer_plane; /* [particles], [layers + 1] */
+    long regions, *centre;   /* [regions] particle */
+    LsmRow (*rows)[WINDOW];  /* [regions] */
     LsmLists lists;
     LsmListAllocator allocator;
     int *region_plane;            /* [regions] */
@@ -146,7 +146,7 @@ static void assert_row_of(const Listed *b, int row, const long *plane, const lon
 
 /* The bar of a region at offsets (b, c) holds the particles `bits`, each at its place. */
 static void assert_bar(const Listed *body, const int *bar, const int centre[3], int b, int c,
-                       uint64_t bits)
+                       LsmRow bits)
 {
     for (int i = 0; i < body->side; i++) {
         long p =
@@ -226,7 +226,7 @@ TEST(lists_name_the_members_of_regions_once)
 
 /* What region r is to list from now on: its members, or some of them, or of all that its window
  * holds; some regions lose them all. */
-static void choose_rows(unsigned *seed, const Listed *b, long r, uint64_t *rows)
+static void choose_rows(unsigned *seed, const Listed *b, long r, LsmRow *rows)
 {
     const int *at = b->lattice.coord[b->centre[r]];
     int way = random_int(seed, 8), row = random_int(seed, b->side * b->side);

@@ -205,23 +205,22 @@ void lsm_blocks_build(Lsm *lsm)
 
 /* The sites of a window's row that sums from or to its centre pass through: all of it, if at all.
  */
-static uint64_t way(const Lsm *lsm, const int *at, int b, int c)
+static LsmRow way(const Lsm *lsm, const int *at, int b, int c)
 {
-    uint64_t row =
-        lsm_window(&lsm->lattice, lsm->box->passable, at[0], at[1] + b, at[2] + c, lsm->w);
+    LsmRow row = lsm_window(&lsm->lattice, lsm->box->passable, at[0], at[1] + b, at[2] + c, lsm->w);
     return row >> lsm->w & 1 ? row : 0;
 }
 
 /* Up, member i passes through (x_i, y_i, z_r) and (x_r, y_i, z_r); down, region r passes through
  * (x_r, y_i, z_r) and (x_i, y_i, z_r). Sites between must be summed at all. */
-bool lsm_blocks_regular(const Lsm *lsm, long p, const uint64_t *rows)
+bool lsm_blocks_regular(const Lsm *lsm, long p, const LsmRow *rows)
 {
     const LsmLattice *l = &lsm->lattice;
     const int *at = l->coord[p];
     int w = lsm->w, side = lsm->side;
     for (int row = 0; row < side * side; row++) {
         int b = row % side - w, c = row / side - w;
-        uint64_t box = lsm_window(l, l->bits, at[0], at[1] + b, at[2] + c, w);
+        LsmRow box = lsm_window(l, l->bits, at[0], at[1] + b, at[2] + c, w);
         if ((box & way(lsm, at, b, 0)) != rows[row] || (box & way(lsm, at, 0, c)) != rows[row])
             return false;
     }

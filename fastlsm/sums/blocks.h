@@ -53,7 +53,7 @@ struct Blocks {
 void lsm_blocks_build(Lsm *lsm);
 
 /* Is the box sum of particle p, whose members are `rows` (region.h), its region's sum? O(w^2). */
-bool lsm_blocks_regular(const Lsm *lsm, long p, const uint64_t *rows);
+bool lsm_blocks_regular(const Lsm *lsm, long p, const LsmRow *rows);
 
 /* Scratch and plane stores for lsm->threads threads. */
 void lsm_blocks_share(Lsm *lsm);

@@ -101,7 +101,7 @@ typedef struct {
 typedef struct SmEngine SmEngine;
 
 /* The largest half-width of regions that are counted in cells. */
-enum { SM_MOST_W = 31 };
+enum { SM_MOST_W = 32 };
 
 /* One engine in one precision. name, precision, create, destroy, step, get, count and either set or
  * get_state and set_state must be there. Any other member may be NULL, of an

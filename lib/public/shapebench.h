@@ -300,7 +300,7 @@ typedef struct {
 typedef struct {
     int engine;    /* SB_FASTLSM, SB_OCTREE, SB_BRUTE, SB_MESHLESS, SB_THIN_SHELL */
     int precision; /* SB_SINGLE (twice as fast) or SB_DOUBLE */
-    int w;         /* half-width of FastLSM's regions in cells, 1 to 31: larger is stiffer */
+    int w;         /* half-width of FastLSM's regions in cells, 1 to 32: larger is stiffer */
     int threads;   /* 0: OpenMP's number, at most the cores of affinity and container's quota */
     double h;      /* time step, s */
     double gravity[3];

@@ -203,7 +203,7 @@ class Refusals(unittest.TestCase):
         mesh = sb.Mesh.shape("beam")
         voxels = sb.Voxels(mesh, particles=300)
         self.refused(sb.UsageError, "'particles' is 0 and 'cell' is 0: give one of them, above 0", sb.Voxels, mesh)
-        self.refused(sb.InputError, "region half-width w = 99: must be 1 to 31", sb.Body, voxels, w=99)
+        self.refused(sb.InputError, "region half-width w = 99: must be 1 to 32", sb.Body, voxels, w=99)
         self.refused(sb.UsageError, "'engine' is 9: there is no such engine", sb.Body, voxels, engine=9)
         self.refused(sb.UsageError, "'levels' is 30: it is from 0 to 12", sb.Body, voxels, engine="octree",
                      octree=sb.OctreeParams(levels=30))

@@ -43,7 +43,7 @@ class Settings(bpy.types.PropertyGroup):
     particles: IntProperty(name="Particles", default=2000, min=8, soft_max=100000,
                            description="Wanted particles of the lattice; of the octree, corners of its finest cells")
     fill: EnumProperty(name="Fill", items=[("solid", "Solid", "With its inside"), ("shell", "Shell", "The surface alone")])
-    w: IntProperty(name="Stiffness (w)", default=2, min=1, max=31,
+    w: IntProperty(name="Stiffness (w)", default=2, min=1, max=32,
                    description="Half-width of the lattice's regions, cells: larger is stiffer")
     width: FloatProperty(name="Stiffness (w)", default=1, min=0.1, soft_max=8,
                          description="Half-width of the octree's regions, edges of each node's cell: larger is stiffer")

@@ -201,7 +201,7 @@ class Body(Made):
 
         engine             "fastlsm"; "octree", and in double precision alone "brute", "meshless", "shell"
         precision          "single" (twice as fast) where the engine has it; "double"
-        w                  2; half-width of FastLSM's regions in cells, 1 to 31: larger is stiffer
+        w                  2; half-width of FastLSM's regions in cells, 1 to 32: larger is stiffer
         threads            0: OpenMP's number, at most the cores of affinity and container's quota; any number gives
                            the same bits
         h                  0.01; time step, s; dt is the same
