@@ -79,16 +79,18 @@ SmCode bench_choices_regions(const BenchExperiment *of, SmError *error)
 
 /* ---- growth */
 
-/* Nothing takes energy from the body, or gives it any; it starts bent, and trembles. */
-static void set_free(BenchScene *scene)
+/* Nothing gives the body energy; it starts bent, and trembles by so many hundredths of a cell. */
+static void set_free(BenchScene *scene, const BenchMeasure *measure, int kick)
 {
     scene->handle_count = scene->force_count = scene->obstacle_count = 0;
     scene->cut_count = scene->touch_count = scene->view.level = 0;
-    scene->params.damping = 0;
+    scene->params.damping = measure->damping / 100.0;
+    if (measure->width) scene->params.w = measure->width;
+    if (measure->width) scene->octree.width.edges = measure->width;
     scene->params.collide = (SmCollideParams){0};
     memset(scene->params.gravity, 0, sizeof scene->params.gravity);
     scene->bend = 0.7;
-    scene->kick = 0.02;
+    scene->kick = kick / 100.0;
 }
 
 /* Of sum m v^2, its mean over so many steps. */
@@ -119,17 +121,19 @@ static double growth_of(BenchRunner *runner, long steps)
 
 SmCode bench_choices_growth(const BenchExperiment *of, SmError *error)
 {
-    BenchRunner runner;
+    int kick[BENCH_RANGE_POINTS], count = bench_range_numbers(&of->measure->n, kick);
     SmCode code = prepare(of, true, error);
-    if (code) return code;
-    set_free(of->scene);
-    code = bench_runner_exact(of->scene, of->body, &runner, error);
-    if (!code) {
+    for (int k = 0; k < count && !code && of->curve->valid; k++) {
+        BenchRunner runner;
+        set_free(of->scene, of->measure, kick[k]);
+        code = bench_runner_exact(of->scene, of->body, &runner, error);
+        if (code) break;
         bench_runner_disturb(&runner, of->lab->seed);
-        bench_curve_exact(of->curve, 0, growth_of(&runner, of->lab->quick ? 2000 : 20000));
+        bench_curve_exact(of->curve, kick[k] / 100.0,
+                          growth_of(&runner, of->lab->quick ? 2000 : 20000));
         bench_curve_check(of->curve, &runner);
+        bench_runner_free(&runner);
     }
-    bench_runner_free(&runner);
     return code;
 }
 

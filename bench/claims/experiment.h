@@ -47,8 +47,10 @@
  * - regions: `field` of the regions of `scene`'s octree, by `symmetry`, against epsilon, which is
  *   range `n` in quarters: "summation_nodes" a region, mean; "most_summation"; "beyond_percent" of
  *   members farther than (1 + epsilon) w; "parts" that the body falls into.
- * - growth: one point: sum m v^2 of `scene`'s free, bent body over its last tenth of 20,000 steps,
- *   by that over the first; of an octree by `masses`, `symmetry`, `weighting`.
+ * - growth: sum m v^2 of `scene`'s free, bent body over its last tenth of 20,000 steps, by that
+ *   over the first, against the velocities it starts with, at random, up to so many hundredths of a
+ *   cell a step, range `n`; `width`: w, of an octree in its nodes' edges, and `damping` in percent,
+ *   in place of the scene's and of none; of an octree by `masses`, `symmetry`, `weighting`.
  * - placement: one point, by `masses`: bending stiffness of a beam in the octree whose cells its
  *   sides cut, the most by the least of four places.
  * - additions: of the sums over all regions of a solid cube on the lattice, how many for a
@@ -138,7 +140,8 @@ typedef struct {
     OctWeighting weighting;
     BenchMatcher matching;
     BenchWithout without;
-    int every; /* 0: as the scene says */
+    int every, width; /* 0: as the scene says */
+    int damping;      /* percent */
     BenchRange w, n;
 } BenchMeasure;
 

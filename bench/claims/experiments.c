@@ -12,8 +12,8 @@
 #include "scene_field.h"
 
 static const BenchSetting range_settings[] = {
-    {"from", BENCH_IN(BenchRange, from), 1, 1000},
-    {"to", BENCH_IN(BenchRange, to), 1, 1000},
+    {"from", BENCH_IN(BenchRange, from), 1, 2000},
+    {"to", BENCH_IN(BenchRange, to), 1, 2000},
     {"points", BENCH_IN(BenchRange, points), 1, BENCH_RANGE_POINTS},
     {0},
 };
@@ -33,6 +33,8 @@ const BenchSetting bench_measure_settings[] = {
     {"matching", BENCH_IN(BenchMeasure, matching),
      BENCH_ONE_OF("lattice", "rigid", "linear", "quadratic")},
     {"every", BENCH_IN(BenchMeasure, every), 1, 100},
+    {"width", BENCH_IN(BenchMeasure, width), 1, 8},
+    {"damping", BENCH_IN(BenchMeasure, damping), 1, 100},
     {"w", BENCH_IN(BenchMeasure, w), .table = range_settings},
     {"n", BENCH_IN(BenchMeasure, n), .table = range_settings},
     {0},
@@ -73,8 +75,9 @@ static const Kind kinds[] = {
                               .run = bench_costs_resampling, .timed = true},
     [BENCH_TRY_REGIONS] = {"regions", "epsilon", NULL, "scene|field|symmetry|n",
                            BENCH_REGION_FIELDS, .run = bench_choices_regions},
-    [BENCH_TRY_GROWTH] = {"growth", "none", "kinetic energy, last tenth by first",
-                          "scene|masses|symmetry|weighting", .run = bench_choices_growth},
+    [BENCH_TRY_GROWTH] = {"growth", "kick, cells a step", "kinetic energy, last tenth by first",
+                          "scene|masses|symmetry|weighting|width|damping|n",
+                          .run = bench_choices_growth},
     [BENCH_TRY_PLACEMENT] = {"placement", "none", "stiffness, most by least", "masses",
                              .run = bench_choices_placement},
     [BENCH_TRY_ADDITIONS] = {"additions", "w", "additions by the paper's", "summation|w",

@@ -399,10 +399,21 @@ TEST(stiffness_by_volume_depends_on_the_place)
     bench_lab_free(&lab);
 }
 
-TEST(energy_stays_but_with_plain_weights)
+/* Kicked hard, a body of narrow regions gains energy, unless it is damped. */
+TEST(energy_stays_but_with_plain_weights_and_hard_kicks)
 {
     BenchLab lab = quick_lab();
-    BenchMeasure measure = {.experiment = BENCH_TRY_GROWTH};
+    BenchMeasure measure = {.experiment = BENCH_TRY_GROWTH, .width = 1, .n = {2, 200, 2}};
+    BenchCurve found = choice(&lab, measure, "penguin", "");
+    assert_true(found.points == 2 && found.x[0] == 0.02 && found.x[1] == 2);
+    if (!(fabs(found.y[0] - 1) < 0.05 && found.y[1] > 1.3))
+        fail_msg("%g and %g", found.y[0], found.y[1]);
+    measure.width = 2;
+    assert_true(fabs(choice(&lab, measure, "penguin", "").y[1] - 1) < 0.05);
+    measure.width = 1;
+    measure.damping = 2;
+    assert_true(choice(&lab, measure, "penguin", "").y[1] < 0.9);
+    measure = (BenchMeasure){.experiment = BENCH_TRY_GROWTH, .n = {2, 2, 1}};
     assert_true(fabs(choice(&lab, measure, "hand-sampled-whole", "").y[0] - 1) < 0.05);
     measure.weighting = OCT_PLAIN;
     assert_true(choice(&lab, measure, "hand-sampled-whole", "").y[0] > 1.5);

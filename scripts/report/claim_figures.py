@@ -22,6 +22,9 @@ GROUPS = {
                 "one.", ""),
     "left": ("What is left of a deformation", "FastLSM section 2: a body whose particles go to their goals, again and again.",
              "xy"),
+    "growth": ("Energy of a free body by how hard it is kicked", "Kinetic energy over the last tenth of 20,000 steps by that "
+               "over the first, against the velocities it starts with. The time step does not matter: in cells a step, it "
+               "is in none of the equations.", "xy"),
     "distances": ("Cost of distances", "Octree section 6.2: from a leaf to all within reach, against how many those are.",
                   "xy"),
     "smoothing": ("How far two steps of smoothing spread", "FastLSM Fig. 2: a cross-section of a bar is displaced and two "
@@ -138,7 +141,8 @@ def words(name):
     for unit, text in UNITS.items():
         name = name.replace(unit, text)
     name = re.sub(r"[_|]", " ", name).replace("/", " and ")
-    return re.sub(r"^w(\d+)$", r"w = \1", name)
+    name = re.sub(r"^damping(\d+)$", lambda found: f"damping {int(found[1]) / 100:g}", name)
+    return re.sub(r"^w(idth)?(\d+)$", r"w = \2", name)
 
 
 def label(name, curve):
@@ -211,10 +215,10 @@ def group_figure(group, curves):
 
 
 def is_part(name, curve, curves):
-    """Is a longer curve of the same thing there, over more w? A profile at one w is of another thing."""
-    over_w = r"\.w\d+-\d+\.\d+$"
-    stem, parts = re.subn(over_w, "", name)
-    return any(re.subn(over_w, "", other) == (stem, 1) and longer["valid"] and len(longer["x"]) > len(curve["x"])
+    """Is a longer curve of the same thing there, over more of w or n? A profile at one w is of another thing."""
+    over = r"\.[wn]\d+-\d+\.\d+$"
+    stem, parts = re.subn(over, "", name)
+    return any(re.subn(over, "", other) == (stem, 1) and longer["valid"] and len(longer["x"]) > len(curve["x"])
                for other, longer in curves.items() if parts)
 
 
