@@ -302,32 +302,21 @@ static void move(OctTask *task, long first, long last)
     }
 }
 
-/* Laps go on in those of the next phase. */
-static void next_phase(OctTask *task)
-{
-    if (!task->laps || !task->apart) return;
-    task->laps[1].last = task->laps->last;
-    task->laps++;
-}
-
 static void step_body(OctTask *task)
 {
     oct_each_block(task, weigh);
     oct_climb(task, moments_up);
     oct_each_ghost(task, oct_ghosts_moments);
-    next_phase(task);
     oct_descend(task, &task->oct->lists, moments_down);
     oct_each_block(task, match);
-    next_phase(task);
     oct_climb(task, transforms_up);
     oct_each_ghost(task, oct_ghosts_transforms);
-    next_phase(task);
     oct_descend(task, oct_goal_lists(task->oct), transforms_down);
     oct_each_block(task, move);
     if (task->oct->damp_now && !task->goals) oct_damp(task);
 }
 
-static void step_one(Oct *oct, int me, int team, bool goals, SmLaps *laps, bool apart)
+static void step_one(Oct *oct, int me, int team, bool goals, SmLaps *laps)
 {
     step_body(&(OctTask){.oct = oct,
                          .body = oct->body,
@@ -335,12 +324,11 @@ static void step_one(Oct *oct, int me, int team, bool goals, SmLaps *laps, bool 
                          .me = me,
                          .team = team,
                          .goals = goals,
-                         .laps = me ? NULL : laps,
-                         .apart = apart});
+                         .laps = me ? NULL : laps});
 }
 
 /* The bodies of one thread. */
-static void step_some(Oct *oct, int worker, bool goals, SmLaps *laps, bool apart)
+static void step_some(Oct *oct, int worker, bool goals, SmLaps *laps)
 {
     for (long i = worker; i < oct->instances; i += oct->workers)
         step_body(&(OctTask){.oct = oct,
@@ -348,26 +336,25 @@ static void step_some(Oct *oct, int worker, bool goals, SmLaps *laps, bool apart
                              .rows = &oct->rows[worker],
                              .team = 1,
                              .goals = goals,
-                             .laps = worker ? NULL : laps,
-                             .apart = apart});
+                             .laps = worker ? NULL : laps});
 }
 
 /* One body is shared by all threads; of several, each thread steps some. A team of one would be
  * made anew in every step, with memory and system calls. */
-static void step_all(Oct *oct, bool goals, SmLaps *laps, bool apart)
+static void step_all(Oct *oct, bool goals, SmLaps *laps)
 {
     bool several = oct->instances > 1;
     if ((several ? oct->workers : oct->threads) == 1) {
         if (several)
-            step_some(oct, 0, goals, laps, apart);
+            step_some(oct, 0, goals, laps);
         else
-            step_one(oct, 0, 1, goals, laps, apart);
+            step_one(oct, 0, 1, goals, laps);
     } else if (several) {
 #pragma omp parallel for schedule(static) num_threads(oct->workers)
-        for (int w = 0; w < oct->workers; w++) step_some(oct, w, goals, laps, apart);
+        for (int w = 0; w < oct->workers; w++) step_some(oct, w, goals, laps);
     } else {
 #pragma omp parallel num_threads(oct->threads)
-        step_one(oct, omp_get_thread_num(), omp_get_num_threads(), goals, laps, apart);
+        step_one(oct, omp_get_thread_num(), omp_get_num_threads(), goals, laps);
     }
 }
 
@@ -381,7 +368,7 @@ OctState *oct_turn(Oct *oct)
         if (bodies[i].stretch)
             oct->body[i].stretch = sm_copy(bodies[i].stretch, 9 * blocks, sizeof(real));
     }
-    step_all(oct, true, NULL, false);
+    step_all(oct, true, NULL);
     return bodies;
 }
 
@@ -397,23 +384,12 @@ void oct_goals(Oct *oct)
     oct_turn_back(oct, oct_turn(oct));
 }
 
-static void step(Oct *oct, SmLaps *laps, bool apart)
+void oct_step(Oct *oct, SmLaps *laps)
 {
     int every = oct->params.damping_every > 0 ? oct->params.damping_every : 1;
     oct->damp_now = oct->params.damping > 0 && oct->steps % every == 0;
-    step_all(oct, false, laps, apart);
+    step_all(oct, false, laps);
     for (long i = 0; i < oct->instances; i++) memset(oct->body[i].kick, 0, sizeof oct->body->kick);
     oct->steps++;
-    sm_lap(apart ? laps + OCT_PHASES - 1 : laps, SM_OTHER);
-}
-
-void oct_step(Oct *oct, SmLaps *laps)
-{
-    step(oct, laps, false);
-}
-
-void oct_step_phases(Oct *oct, SmLaps laps[OCT_PHASES])
-{
-    assert(oct->instances == 1);
-    step(oct, laps, true);
+    sm_lap(laps, SM_OTHER);
 }

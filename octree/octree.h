@@ -6,19 +6,14 @@
 #include "positions.h"
 #include "state.h"
 
-#define oct_step        SM_NAME(oct_step)
-#define oct_step_phases SM_NAME(oct_step_phases)
-#define oct_goals       SM_NAME(oct_goals)
-#define oct_turn        SM_NAME(oct_turn)
-#define oct_turn_back   SM_NAME(oct_turn_back)
+#define oct_step      SM_NAME(oct_step)
+#define oct_goals     SM_NAME(oct_goals)
+#define oct_turn      SM_NAME(oct_turn)
+#define oct_turn_back SM_NAME(oct_turn_back)
 
 /* One time step of every body: matching, eq. 1, damping, eq. 2, obstacles. Laps are those of the
  * first thread. */
 void oct_step(Oct *oct, SmLaps *laps);
-
-/* The same with laps of each phase apart, for one body alone; the caller starts those of the
- * first. */
-void oct_step_phases(Oct *oct, SmLaps laps[OCT_PHASES]);
 
 /* Goal positions of the present state into `g`, nothing else changes: rotations that the next step
  * begins from stay the last one's. */

@@ -121,15 +121,6 @@ typedef struct {
     Obstacles obstacles;    /* in finest cells from where origins count */
 } Oct;
 
-/* Phases of a step, in order. */
-enum {
-    OCT_MOMENTS_DEPTH,      /* tree nodes' moments */
-    OCT_MOMENTS_BREADTH,    /* regions' moments; matching */
-    OCT_TRANSFORMS_DEPTH,   /* tree nodes' transforms */
-    OCT_TRANSFORMS_BREADTH, /* goal positions; motion and damping */
-    OCT_PHASES
-};
-
 /* What one thread steps one body with. */
 typedef struct {
     Oct *oct;
@@ -140,7 +131,6 @@ typedef struct {
     bool goals;   /* goal positions only */
     bool alone;   /* the first thread has worked alone since all have met */
     SmLaps *laps; /* of the first thread of an instrumented step, or NULL */
-    bool apart;   /* there are laps for every phase, those of the next one follow */
 } OctTask;
 
 /* Where the coordinates of a leaf count from. */

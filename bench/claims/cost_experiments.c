@@ -29,11 +29,11 @@ static BenchKernel kernel_of(const BenchKernelKind *kind, int set, int side, int
         .kind = kind, .set = set, .side = side, .w = w, .part = part, .threads = 1};
 }
 
-/* Prepares, checks and times so many kernels in turn, `each` of them for a point of the curve,
- * which `add` adds. */
+/* Prepares, checks and times so many kernels in turn, each for a point of the curve, which `add`
+ * adds. */
 static SmCode time_kernels(const BenchExperiment *of, const BenchKernel *kernels, int count,
-                           int each, int repeats,
-                           void (*add)(BenchCurve *curve, const BenchJob *jobs, int points),
+                           int repeats,
+                           void (*add)(BenchCurve *curve, const BenchJob *job, int points),
                            SmError *error)
 {
     const BenchKernelParams params = {
@@ -44,9 +44,8 @@ static SmCode time_kernels(const BenchExperiment *of, const BenchKernel *kernels
     if (!code) code = bench_jobs_time(jobs, count, error);
     for (int j = 0; j < count && !code; j++)
         if (!jobs[j].trial->valid)
-            bench_curve_fail(of->curve, "point %d: %s", j / each + 1, jobs[j].trial->reason);
-    for (int j = 0; j < count && !code && of->curve->valid; j += each)
-        add(of->curve, &jobs[j], count / each);
+            bench_curve_fail(of->curve, "point %d: %s", j + 1, jobs[j].trial->reason);
+    for (int j = 0; j < count && !code && of->curve->valid; j++) add(of->curve, &jobs[j], count);
     bench_jobs_close(jobs, count);
     free(jobs);
     return code;
@@ -69,8 +68,8 @@ static void add_sums(BenchCurve *curve, const BenchJob *job, int points)
     double *step = sm_alloc((size_t)samples, sizeof *step);
     for (int r = 0; r < samples; r++) {
         double all = 0;
-        for (int s = 0; s < SM_STAGES; s++) all += bench_trial_stage(trial, r, 0, 0, (SmStage)s);
-        share[r] = bench_trial_stage(trial, r, 0, 0, SM_FAST_SUM) / all;
+        for (int s = 0; s < SM_STAGES; s++) all += bench_trial_stage(trial, r, (SmStage)s);
+        share[r] = bench_trial_stage(trial, r, SM_FAST_SUM) / all;
         step[r] = 1e9 * trial->cpu[r] / (double)job->items;
     }
     BenchInterval part = bench_curve_interval(share, samples, 0.5, points);
@@ -91,7 +90,7 @@ SmCode bench_costs_sums(const BenchExperiment *of, SmError *error)
         kernels[c] = kernel_of(&bench_cube_kernels, c, of->lab->quick ? 20 : 32, w[c], SM_FAST_SUM);
         kernels[c].summation = summation;
     }
-    return time_kernels(of, kernels, count, 1, repeats, add_sums, error);
+    return time_kernels(of, kernels, count, repeats, add_sums, error);
 }
 
 /* ---- sums of a body */
@@ -223,40 +222,38 @@ SmCode bench_costs_body_sums(const BenchExperiment *of, SmError *error)
 
 /* ---- size */
 
-/* ms a step at x: of the lattice's CPU time, of the octree the sum of the parts that are timed. */
-static void add_ms(BenchCurve *curve, double x, const BenchJob *jobs, int points)
+/* ms a step at x: of the lattice's CPU time. */
+static void add_ms(BenchCurve *curve, double x, const BenchJob *job, int points)
 {
-    int samples = jobs->trial->samples, parts = jobs->kernel->part == BENCH_TREE_DEPTH ? 3 : 1;
+    int samples = job->trial->samples;
     double *ms = sm_alloc((size_t)samples, sizeof *ms);
     for (int r = 0; r < samples; r++)
-        for (int p = 0; p < parts; p++)
-            ms[r] += 1e3 * (jobs->kernel->kind == &bench_cube_kernels
-                                ? jobs->trial->cpu[r]
-                                : jobs[p].kernel->kind->seconds(&jobs[p], r));
+        ms[r] =
+            1e3 * (job->kernel->kind == &bench_cube_kernels ? job->trial->cpu[r]
+                                                            : job->kernel->kind->seconds(job, r));
     bench_curve_sample(curve, x, ms, samples, BENCH_LOW, points);
     free(ms);
 }
 
-static void add_size(BenchCurve *curve, const BenchJob *jobs, int points)
+static void add_size(BenchCurve *curve, const BenchJob *job, int points)
 {
-    add_ms(curve, (double)jobs->items, jobs, points);
+    add_ms(curve, (double)job->items, job, points);
 }
 
-static void add_resolution(BenchCurve *curve, const BenchJob *jobs, int points)
+static void add_resolution(BenchCurve *curve, const BenchJob *job, int points)
 {
-    add_ms(curve, jobs->kernel->side, jobs, points);
+    add_ms(curve, job->kernel->side, job, points);
 }
 
 SmCode bench_costs_size(const BenchExperiment *of, SmError *error)
 {
-    static const int parts[] = {BENCH_TREE_DEPTH, BENCH_TREE_BREADTH, BENCH_TREE_GOALS};
     int side[BENCH_RANGE_POINTS], count = bench_range_numbers(&of->measure->n, side);
     bool octree = bench_engine(of->measure->engine)->sampled;
     bool sums = !strcmp(of->measure->field, "sums");
     bool by_side = !strcmp(of->measure->field, "resolution");
-    int each = sums ? 3 : 1;
+    int part = sums ? BENCH_TREE_SUMS : octree ? BENCH_TREE_STEP : BENCH_CUBE_STEP;
     const BenchKernelKind *kind = octree ? &bench_tree_step_kernels : &bench_cube_kernels;
-    BenchKernel kernels[3 * BENCH_RANGE_POINTS];
+    BenchKernel kernels[BENCH_RANGE_POINTS];
     for (int c = 0; c < count && of->lab->quick; c++) side[c] = side[c] > 40 ? 40 : side[c];
     while (count > 1 && side[count - 1] == side[count - 2]) count--;
     bench_curve_begin(of->curve,
@@ -264,12 +261,11 @@ SmCode bench_costs_size(const BenchExperiment *of, SmError *error)
                       : octree ? "nodes"
                                : "particles",
                       sums ? "sums, ms/step" : "ms/step");
-    for (int k = 0; k < count * each; k++) {
-        int whole = octree ? BENCH_TREE_WHOLE : BENCH_CUBE_STEP;
-        kernels[k] = kernel_of(kind, k / each, side[k / each], 1, sums ? parts[k % 3] : whole);
+    for (int k = 0; k < count; k++) {
+        kernels[k] = kernel_of(kind, k, side[k], 1, part);
         kernels[k].damping = 0.1;
     }
-    return time_kernels(of, kernels, count * each, each, bench_lab_repeats(of->lab),
+    return time_kernels(of, kernels, count, bench_lab_repeats(of->lab),
                         by_side ? add_resolution : add_size, error);
 }
 
@@ -294,7 +290,7 @@ SmCode bench_costs_polar(const BenchExperiment *of, SmError *error)
                         : !strncmp(field, "warm", 4) ? BENCH_POLAR_WARM
                                                      : BENCH_POLAR_BATCH;
     const BenchKernel kernel = kernel_of(&bench_polar_kernels, 0, 0, 0, (int)method);
-    return time_kernels(of, &kernel, 1, 1, bench_lab_repeats(of->lab),
+    return time_kernels(of, &kernel, 1, bench_lab_repeats(of->lab),
                         strstr(field, "sweeps") ? add_sweeps : add_ns, error);
 }
 

@@ -113,7 +113,7 @@ static SmCode prepare(BenchJob *job, SmError *error)
         job->precision == BENCH_F64 ? &fastlsm_engine_f64 : &fastlsm_engine_f32;
     BenchCube *cube = job->subject = sm_alloc(1, sizeof *cube);
     SmCode code = bench_cube_create(kernel->side, type, &params, job->params->seed, cube, error);
-    cube->trial.lap_sets = kernel->part != BENCH_CUBE_STEP;
+    cube->trial.stages = kernel->part != BENCH_CUBE_STEP;
     job->trial = &cube->trial;
     job->item = "particle";
     job->items = cube->block.particles;
@@ -125,7 +125,7 @@ static double seconds(const BenchJob *job, int r)
 {
     int part = job->kernel->part;
     if (part == BENCH_CUBE_STEP) return job->trial->seconds[r];
-    return bench_trial_stage(job->trial, r, 0, 0, (SmStage)part);
+    return bench_trial_stage(job->trial, r, (SmStage)part);
 }
 
 static SmOperations operations(const BenchKernel *kernel)

@@ -39,10 +39,9 @@
 #define BODIES(number, body)                                                                       \
     BODY(number, body, 1, 0, false), BODY(number, body, 4, 2, false),                              \
         BODY(number, body, 10, 3.3, true)
-#define HAND(label, which, ...)                                                                    \
+#define HAND(label, ...)                                                                           \
     {                                                                                              \
-        "oct-hand-" label, "octree", &bench_tree_step_kernels, 50, .side = BENCH_HAND,             \
-                                                                   .part = (which), __VA_ARGS__    \
+        "oct-hand-" label, "octree", &bench_tree_step_kernels, 50, .side = BENCH_HAND, __VA_ARGS__ \
     }
 /* The cost of a change does not grow with the body: at most twice the processor time that it takes
  * in 10^3 nodes, whose caches the others outgrow. */
@@ -94,15 +93,9 @@ static const BenchKernel kernels[] = {
     STEP("scale-1e5", "scaling", 40, 46, 1, .base = "scale-1e4", .wanted = 1.25),
     STEP("scale-1e6", "scaling", 40, 100, 1, .base = "scale-1e4", .wanted = 1.25),
     STEP("scale-1e7", "scaling", 40, 215, 1, .large = true, .base = "scale-1e4", .wanted = 1.25),
-    HAND("depth", BENCH_TREE_DEPTH, .at_most = 0),
-    HAND("breadth", BENCH_TREE_BREADTH, .at_most = 0),
-    HAND("polar", BENCH_TREE_POLAR, .at_most = 0),
-    HAND("goals-hf", BENCH_TREE_GOALS, .at_most = 0),
-    HAND("goals-adjoint", BENCH_TREE_GOALS, .adjoint = true),
-    HAND("damping", BENCH_TREE_DAMPING, .at_most = 0),
-    HAND("step", BENCH_TREE_WHOLE, .at_most = 60e3, .avx2_share = 0.20, .paper = "4.5 ms"),
-    HAND("step-plain", BENCH_TREE_WHOLE, .weighting = OCT_PLAIN),
-    HAND("step-adjoint", BENCH_TREE_WHOLE, .adjoint = true),
+    HAND("step", .at_most = 60e3, .avx2_share = 0.20, .paper = "4.5 ms"),
+    HAND("step-plain", .weighting = OCT_PLAIN),
+    HAND("step-adjoint", .adjoint = true),
     CHANGE(60, 10, "oct-refine-1e3", BENCH_REFINE, .at_most = 0),
     CHANGE(60, 10, "oct-cut-1e3", BENCH_CUT, .at_most = 0),
     CHANGES(61, 22, "1e4", .at_most = 0),

@@ -18,11 +18,11 @@ TEST(a_wrong_octree_step_is_not_timed)
     OctStructure body;
     SmError error;
     assert_int_equal(bench_sampled(6, &body, &error), SM_OK);
-    BenchTreeStep steps[3] = {{.body = &body, .threads = 1, .seed = 1, .parts = true}};
+    BenchTreeStep steps[3] = {{.body = &body, .threads = 1, .seed = 1}};
     bench_tree_steps_f32.create(&steps[0]);
     assert_true(steps[0].trial.valid);
     lose_member(&body); /* it is not symmetric: only the adjoint is right */
-    steps[1] = (BenchTreeStep){.body = &body, .threads = 1, .seed = 1, .parts = true};
+    steps[1] = (BenchTreeStep){.body = &body, .threads = 1, .seed = 1};
     steps[2] = steps[1];
     steps[2].adjoint = true;
     for (int s = 1; s < 3; s++) bench_tree_steps_f32.create(&steps[s]);
@@ -32,13 +32,7 @@ TEST(a_wrong_octree_step_is_not_timed)
     BenchTrial *trials[] = {&steps[0].trial, &steps[1].trial, &steps[2].trial};
     bench_trials_time(trials, 3, 2);
     assert_null(steps[1].trial.seconds);
-    for (int s = 0; s < 3; s += 2) {
-        double parts = 0, whole = steps[s].trial.laps[0].last; /* seconds of a clock, far more */
-        assert_int_equal(steps[s].trial.samples, 2);
-        for (int p = 0; p < BENCH_TREE_PARTS; p++)
-            parts += bench_tree_steps_f32.ns(&steps[s], (BenchTreePart)p, 1);
-        assert_true(parts > 0 && parts < 1e9 * whole);
-    }
+    for (int s = 0; s < 3; s += 2) assert_int_equal(steps[s].trial.samples, 2);
     for (int s = 0; s < 3; s++) bench_tree_steps_f32.free(&steps[s]);
     oct_structure_free(&body);
 }

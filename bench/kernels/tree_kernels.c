@@ -3,12 +3,6 @@
 
 #include "tree_body.h"
 
-/* Of the hand a step is the item, else a node. */
-static bool is_body(const BenchJob *job)
-{
-    return job->kernel->side == BENCH_HAND && job->kernel->part == BENCH_TREE_WHOLE;
-}
-
 static SmCode prepare_step(BenchJob *job, SmError *error)
 {
     const BenchKernel *kernel = job->kernel;
@@ -26,80 +20,35 @@ static SmCode prepare_step(BenchJob *job, SmError *error)
         *step = (BenchTreeStep){.body = &body->structure,
                                 .weighting = kernel->weighting,
                                 .adjoint = kernel->adjoint,
-                                .parts = kernel->part != BENCH_TREE_WHOLE,
+                                .stages = kernel->part == BENCH_TREE_SUMS,
                                 .threads = job->threads,
                                 .seed = job->params->seed};
         bench_tree_steps(body->precision)->create(step);
     }
-    assert(kernel->part == BENCH_TREE_WHOLE || step->parts); /* those come first in the list */
     job->trial = &step->trial;
-    job->item = is_body(job) ? "step" : "node";
-    job->items = is_body(job) ? 1 : body->structure.tree.leaves;
+    job->item = kernel->side == BENCH_HAND ? "step" : "node";
+    job->items = kernel->side == BENCH_HAND ? 1 : body->structure.tree.leaves;
     job->per_run = (double)job->items;
     return SM_OK;
 }
 
 static double step_seconds(const BenchJob *job, int r)
 {
-    return 1e-9 * bench_tree_steps(job->precision)
-                      ->ns(job->trial->timed.subject, (BenchTreePart)job->kernel->part, r);
-}
-
-static SmOperations work_of(BenchTreePart part, const OctStepCounts *counts)
-{
-    static SmOperations (*const of[])(const OctStepCounts *counts) = {
-        [BENCH_TREE_DEPTH] = oct_depth_operations,
-        [BENCH_TREE_BREADTH] = oct_breadth_operations,
-        [BENCH_TREE_GOALS] = oct_goal_operations,
-        [BENCH_TREE_DAMPING] = oct_damping_operations,
-        [BENCH_TREE_WHOLE] = oct_step_operations};
-    return part == BENCH_TREE_POLAR ? sm_polar_batch_operations() : of[part](counts);
-}
-
-static void note_step(const BenchKernel *kernel, const BenchTreeStep *step, double ns_per_node,
-                      BenchKernelRow *row)
-{
-    const OctStepCounts *c = &step->counts;
-    char *note = row->note;
-    size_t room = sizeof row->note;
-    double entries = c->leaf_entries + c->inner_entries;
-    double goals = c->goal_entries + c->goal_prefix_entries;
-    double children = c->leaf_children + c->inner_children;
-    switch ((BenchTreePart)kernel->part) {
-    case BENCH_TREE_DEPTH:
-        snprintf(note, room, "%.2f children a node", children);
-        break;
-    case BENCH_TREE_BREADTH:
-        snprintf(note, room, "%.2f entries a node, for %.2f summation nodes", entries,
-                 step->body->regions.mean);
-        break;
-    case BENCH_TREE_POLAR:
-        snprintf(note, room, "one matrix a node");
-        break;
-    case BENCH_TREE_GOALS:
-        snprintf(note, room, "depth and breadth; %.2f children, %.2f entries a node", children,
-                 goals);
-        break;
-    case BENCH_TREE_DAMPING:
-        snprintf(note, room, "%.2f and %.2f entries a node", entries, goals);
-        break;
-    case BENCH_TREE_WHOLE:
-        snprintf(note, room, "%s%s%s%.1f ns a node; %.2f summation nodes",
-                 kernel->paper ? "paper: " : "", kernel->paper ? kernel->paper : "",
-                 kernel->paper ? "; " : "", ns_per_node, step->body->regions.mean);
-        break;
-    }
+    return job->kernel->part == BENCH_TREE_SUMS ? bench_trial_stage(job->trial, r, SM_FAST_SUM)
+                                                : job->trial->seconds[r];
 }
 
 static void report_step(BenchJob *job, BenchKernelRow *row)
 {
     const BenchTreeBody *body = job->body;
     const BenchTreeStep *step = job->trial->timed.subject;
+    const char *paper = job->kernel->paper;
     double nodes = (double)body->structure.tree.leaves;
-    job->least = work_of((BenchTreePart)job->kernel->part, &step->counts);
-    if (is_body(job)) job->least = bench_tree_body_operations(body, job->least);
+    job->least = bench_tree_body_operations(body, oct_step_operations(&step->counts));
     job->footprint = nodes * oct_node_bytes(&step->counts, job->precision == BENCH_F32 ? 4 : 8);
-    note_step(job->kernel, step, is_body(job) ? row->ns / nodes : row->ns, row);
+    snprintf(row->note, sizeof row->note, "%s%s%s%.1f ns a node; %.2f summation nodes",
+             paper ? "paper: " : "", paper ? paper : "", paper ? "; " : "", row->ns / nodes,
+             step->body->regions.mean);
 }
 
 const BenchKernelKind bench_tree_step_kernels = {.open = bench_tree_body_open,

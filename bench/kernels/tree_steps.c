@@ -114,12 +114,7 @@ static void start(void *subject)
 
 static void run_step(void *subject, SmLaps *laps)
 {
-    Oct *oct = ((BenchTreeStep *)subject)->engine;
-    if (laps) {
-        laps[0].last = sm_now();
-        oct_step_phases(oct, laps);
-    } else
-        oct_step(oct, NULL);
+    oct_step(((BenchTreeStep *)subject)->engine, laps);
 }
 
 static bool finite_at_end(void *subject)
@@ -143,7 +138,7 @@ static void create(BenchTreeStep *step)
     step->trial = (BenchTrial){.timed = {step, start, run_step},
                                .finite = finite_at_end,
                                .threads = step->threads,
-                               .lap_sets = step->parts ? OCT_PHASES : 0,
+                               .stages = step->stages,
                                .valid = true};
     step->counts = oct_step_counts(&body->tree, &oct->lists, oct_goal_lists(oct));
     step->x = sm_alloc((size_t)oct->leaves, sizeof *step->x);
@@ -162,18 +157,4 @@ static void destroy(BenchTreeStep *step)
     *step = (BenchTreeStep){0};
 }
 
-static double ns(const BenchTreeStep *step, BenchTreePart part, int r)
-{
-    static const struct {
-        int first, last;
-        SmStage stage;
-    } of[BENCH_TREE_PARTS] = {{OCT_MOMENTS_DEPTH, OCT_MOMENTS_DEPTH, SM_FAST_SUM},
-                              {OCT_MOMENTS_BREADTH, OCT_MOMENTS_BREADTH, SM_FAST_SUM},
-                              {OCT_MOMENTS_BREADTH, OCT_MOMENTS_BREADTH, SM_POLAR},
-                              {OCT_TRANSFORMS_DEPTH, OCT_TRANSFORMS_BREADTH, SM_FAST_SUM},
-                              {OCT_TRANSFORMS_BREADTH, OCT_TRANSFORMS_BREADTH, SM_DAMPING}};
-    if (part == BENCH_TREE_WHOLE) return 1e9 * step->trial.seconds[r];
-    return 1e9 * bench_trial_stage(&step->trial, r, of[part].first, of[part].last, of[part].stage);
-}
-
-const BenchTreeSteps SM_NAME(bench_tree_steps) = {create, ns, destroy};
+const BenchTreeSteps SM_NAME(bench_tree_steps) = {create, destroy};

@@ -11,23 +11,15 @@
 #include "machine_peak.h"
 #include "trial.h"
 
-/* What of a step is timed apart. */
-typedef enum {
-    BENCH_TREE_DEPTH,   /* moments of tree nodes */
-    BENCH_TREE_BREADTH, /* sums over regions */
-    BENCH_TREE_POLAR,
-    BENCH_TREE_GOALS, /* transforms of tree nodes, and goal positions */
-    BENCH_TREE_DAMPING,
-    BENCH_TREE_PARTS,
-    BENCH_TREE_WHOLE = BENCH_TREE_PARTS
-} BenchTreePart;
+/* Parts of a step that are timed: all of it, or its sums alone. */
+enum { BENCH_TREE_STEP, BENCH_TREE_SUMS };
 
 typedef struct {
-    BenchTrial trial;         /* with laps of OCT_PHASES where times of parts are wanted */
+    BenchTrial trial;         /* with times of stages where they are wanted */
     const OctStructure *body; /* set by the caller, as the next ones */
     OctWeighting weighting;
     bool adjoint; /* goal positions by the transpose of the region sums */
-    bool parts;   /* are times of parts wanted? */
+    bool stages;  /* are times of stages wanted? */
     int threads;
     unsigned long seed;
     /* found */
@@ -41,9 +33,6 @@ typedef struct {
     /* Fills `step` in from the caller's choices and checks the engine's goal positions, and a step
      * with damping, against the slow twin (reference/octree_goals.h). The caller frees it. */
     void (*create)(BenchTreeStep *step);
-
-    /* ns a step in sample r; of parts less the time of reading clocks. */
-    double (*ns)(const BenchTreeStep *step, BenchTreePart part, int r);
 
     void (*free)(BenchTreeStep *step);
 } BenchTreeSteps;

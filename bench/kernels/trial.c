@@ -43,7 +43,7 @@ static double run_once(BenchTrial *trial, int r, SmLaps *laps)
     if (timed->restore) timed->restore(timed->subject);
     double user = user_now(), cpu = cpu_now();
     bench_watch_start(&trial->watch);
-    for (int i = 0; laps && i < trial->lap_sets; i++) sm_laps_start(&laps[i]);
+    if (laps) sm_laps_start(laps);
     for (int i = 0; i < trial->runs; i++) timed->step(timed->subject, laps);
     double seconds = bench_watch_stop(&trial->watch);
     if (!laps) {
@@ -69,8 +69,8 @@ static void begin(BenchTrial *trial, int repeats)
     trial->cpu = sm_alloc(count, sizeof *trial->cpu);
     trial->user = sm_alloc(count, sizeof *trial->user);
     trial->watch = bench_watch(trial->threads);
-    if (trial->lap_sets) {
-        trial->laps = sm_alloc(count * (size_t)trial->lap_sets, sizeof *trial->laps);
+    if (trial->stages) {
+        trial->laps = sm_alloc(count, sizeof *trial->laps);
         trial->clock = sm_lap_seconds();
     }
     if (trial->runs == 0) {
@@ -100,19 +100,17 @@ void bench_trials_time(BenchTrial *const *trials, int count, int repeats)
             if (!wants_more(trial, since)) continue;
             int s = trial->samples++;
             trial->seconds[s] = sample(trial, s, NULL);
-            if (trial->lap_sets) sample(trial, s, trial->laps + (size_t)(s * trial->lap_sets));
+            if (trial->stages) sample(trial, s, &trial->laps[s]);
         }
     for (int i = 0; i < count; i++)
         if (trials[i]->valid && trials[i]->finite && !trials[i]->finite(trials[i]->timed.subject))
             bench_trial_fail(trials[i], "positions are not finite after the steps");
 }
 
-double bench_trial_stage(const BenchTrial *trial, int r, int first, int last, SmStage stage)
+double bench_trial_stage(const BenchTrial *trial, int r, SmStage stage)
 {
-    double seconds = 0;
-    const SmLaps *laps = trial->laps + (size_t)(r * trial->lap_sets);
-    for (int i = first; i <= last; i++)
-        seconds += laps[i].seconds[stage] - trial->clock * (double)laps[i].count[stage];
+    const SmLaps *laps = &trial->laps[r];
+    double seconds = laps->seconds[stage] - trial->clock * (double)laps->count[stage];
     return fmax(seconds, 0) / trial->runs;
 }
 

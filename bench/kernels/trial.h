@@ -11,7 +11,7 @@ typedef struct {
     BenchTimed timed;    /* `restore` (or NULL), not timed, comes before every sample */
     int threads;         /* that it runs on */
     int runs;            /* in a sample; 0: as many as last long enough, at most 64 */
-    int lap_sets;        /* also sampled with clocks inside, which fill so many SmLaps; 0: not */
+    bool stages;         /* also sampled with clocks inside */
     bool warm_up;        /* run once before the first sample */
     bool once;           /* a sample counts though others disturbed it: a run cannot be repeated */
     int most;            /* samples; 0: as many as asked for */
@@ -25,7 +25,7 @@ typedef struct {
     double *seconds;    /* [samples] a run; NULL: not timed */
     double *cpu, *user; /* [samples] a run: processor time of the process, which other work hardly
                          * touches; of it the user's, without page faults, which are the system's */
-    SmLaps *laps;       /* [samples][lap_sets] of all runs of a sample */
+    SmLaps *laps;       /* [samples] of all runs of a sample */
     double clock;       /* seconds that a lap takes to read the clock */
 } BenchTrial;
 
@@ -36,9 +36,8 @@ void bench_trial_fail(BenchTrial *trial, const char *format, ...)
 /* Times the valid ones in turn, `repeats` samples each. */
 void bench_trials_time(BenchTrial *const *trials, int count, int repeats);
 
-/* Seconds a run in sample r that the sets first .. last of laps gave to a stage, less the time that
- * reading the clock took. */
-double bench_trial_stage(const BenchTrial *trial, int r, int first, int last, SmStage stage);
+/* Seconds a run in sample r of a stage, less the time that reading the clock took. */
+double bench_trial_stage(const BenchTrial *trial, int r, SmStage stage);
 
 void bench_trial_free(BenchTrial *trial);
 
