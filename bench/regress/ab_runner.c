@@ -17,7 +17,8 @@ typedef struct {
     bool there[BENCH_BUILDS]; /* which builds have it, as far as is known */
     char checked[BENCH_BUILDS][sizeof((BenchRow *)0)->state_hash]; /* their state's, or empty */
     bool refused[BENCH_BUILDS]; /* the build cannot be told that */
-    int repeats;                /* after the first round, of both builds; 0: as the task says */
+    int processes;              /* so far */
+    int repeats;                /* after each build's first process; 0: as the task says */
     char reason[224];           /* why the old one has not */
 } State;
 
@@ -31,7 +32,7 @@ typedef struct {
 
 /* The words of a `tables` process; numbers are written into `number`. */
 static void make_words(const BenchAbRunner *runner, const BenchTask *task, const State *state,
-                       BenchBuild build, int round, const char *output, char number[4][32],
+                       BenchBuild build, const char *output, char number[4][32],
                        const char *word[WORDS])
 {
     int count = 0;
@@ -46,7 +47,8 @@ static void make_words(const BenchAbRunner *runner, const BenchTask *task, const
         {"--checked", checked},     {"-o", output},
     };
     snprintf(number[0], 32, "%d", task->threads > 0 ? task->threads : 1);
-    snprintf(number[1], 32, "%d", round && state->repeats ? state->repeats : task->repeats);
+    snprintf(number[1], 32, "%d",
+             state->processes > 1 && state->repeats ? state->repeats : task->repeats);
     snprintf(number[2], 32, "%.6g", task->block);
     snprintf(number[3], 32, "%lu", runner->seed);
     word[count++] = runner->program[build];
@@ -134,7 +136,7 @@ static SmCode run_process(Session *session, const BenchTask *task, BenchBuild bu
     const char *word[WORDS];
     snprintf(output, sizeof output, "%.4000s/rows.h5", runner->folder);
     snprintf(log, sizeof log, "%.4000s/process.txt", runner->folder);
-    make_words(runner, task, state, build, round, output, number, word);
+    make_words(runner, task, state, build, output, number, word);
     BenchProcess process = {.word = word, .output = log};
     BenchProcessEnd end;
     SmCode code = bench_process_run(&process, &end, error);
@@ -146,6 +148,7 @@ static SmCode run_process(Session *session, const BenchTask *task, BenchBuild bu
     }
     /* an INVALID row is stored before the process says so; a scene that cannot run stores nothing
      */
+    state->processes++;
     bool there = (end.status == SM_OK || end.status == SM_INVALID) && access(output, F_OK) == 0;
     state->there[build] = there;
     code = there ? keep(session, task, state, build, round, output, error)

@@ -4,8 +4,8 @@
  * what drifts slowly hits both builds alike; a round beside a stored file is two of the new one.
  * Each process is `PROGRAM tables --scene NAME ...`, which checks the scene before it times it. The
  * state that is timed is the same in all of a build's: those after its first are told its hash and
- * do not check it again (`tables --checked`, unless the build is too old for it). After the first
- * round both builds take no more repeats than fit in BENCH_PROCESS_SECONDS, but 15. */
+ * do not check it again (`tables --checked`, unless the build is too old for it). After its
+ * first process a build takes no more repeats than fit in BENCH_PROCESS_SECONDS, but 15. */
 #ifndef BENCH_AB_RUNNER_H
 #define BENCH_AB_RUNNER_H
 
