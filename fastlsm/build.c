@@ -124,8 +124,8 @@ typedef struct {
 
 static void open_batch(const Lsm *lsm, Batch *batch)
 {
-    const long words = 1 << 17, area = (long)lsm->side * lsm->side;
-    batch->count = words / area > 64 ? words / area : 64;
+    const long rows = 1 << 16, area = (long)lsm->side * lsm->side;
+    batch->count = rows / area > 64 ? rows / area : 64;
     batch->rows = sm_alloc((size_t)(batch->count * area), sizeof *batch->rows);
     batch->keyed = sm_alloc((size_t)batch->count, sizeof *batch->keyed);
     batch->whole = sm_alloc((size_t)batch->count, sizeof *batch->whole);

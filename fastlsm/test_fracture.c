@@ -6,7 +6,7 @@
 #include "sums/blocks.h"
 #include "test_body.h"
 
-enum { TRIALS = 600 };
+enum { TRIALS = 600, LONG = -1 };
 
 /* Goals, in cells: what the engine promises in single precision; rounding of sums in double. */
 static const double limit = SM_REAL_BITS == 32 ? 5e-5 : 1e-11;
@@ -50,7 +50,10 @@ static void get_goals(Lsm *lsm, const Body *body, double (*g)[3])
 /* A random shape, its cells of size 1, bent but nowhere inside out. */
 static void make_body(unsigned *seed, int kind, int most, Body *body)
 {
-    random_body(seed, kind, most, &body->voxels);
+    if (kind == LONG)
+        random_block(seed, (const int[3]){70, 3, 3}, 1, 1, &body->voxels);
+    else
+        random_body(seed, kind, most, &body->voxels);
     body->voxels.cell = 1;
     for (int d = 0; d < 3; d++) body->voxels.origin[d] = -0.5 * body->voxels.size[d];
     body_arrays(body);
@@ -195,9 +198,10 @@ TEST(test_equal_to_rebuild)
     int rebuilt = 0;
     for (int trial = 0; trial < TRIALS; trial++) {
         Body body;
-        int w = 1 + trial % 4;
-        SmLayout layout = trial / 4 % 2 ? SM_LAYOUT_BLOCKS : SM_LAYOUT_LISTS;
-        make_body(&seed, trial / 8 % 6, trial % 32 < 4 ? 9 : 5, &body);
+        bool widest = trial > TRIALS - 3; /* in both layouts */
+        int w = widest ? SM_MOST_W : 1 + trial % 4;
+        SmLayout layout = (widest ? trial : trial / 4) % 2 ? SM_LAYOUT_BLOCKS : SM_LAYOUT_LISTS;
+        make_body(&seed, widest ? LONG : trial / 8 % 6, trial % 32 < 4 ? 9 : 5, &body);
         Lsm *lsm = breakable(&body, w, layout, trial % 5 ? 0 : 0.3),
             *twin = breakable(&body, w, layout, trial % 5 ? 0 : 0.3);
         Breaks breaks = {0};

@@ -11,7 +11,6 @@
  * lists transposed the second is the adjoint of the first. */
 #include "octree.h"
 
-#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -281,7 +281,7 @@ TEST(mistakes_are_one_line)
         {"calibrate whole.h5 --scene small.cfg", 2, "--scene is that of --young where FILE.h5"},
         {"calibrate --w 1.5", 2, "--w: 1.5 is no whole number"},
         {"calibrate --w none", 2, "--w: 'none' is not a range"},
-        {"calibrate --w 0:3", 2, "--w: 0 is not from 1 to 31"},
+        {"calibrate --w 0:3", 2, "--w: 0 is not from 1 to 32"},
         {"calibrate --epsilon -1", 2, "--epsilon: -1 is not from 0 to 4"},
         {"calibrate --aspect 2", 2, "--aspect: 2 is not from 3 to 100"},
         {"calibrate --across 2.5", 2, "--across: 2.5 is no whole number"},

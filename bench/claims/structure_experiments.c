@@ -152,6 +152,7 @@ static int by_index(const void *a, const void *b)
 /* Rows mixed into one number, by FNV-1a: 0 only where all of them are. */
 static uint64_t mixed(const LsmRow *row, int count)
 {
+    _Static_assert(2 * BENCH_MOST_W < 64, "a row is a word");
     uint64_t hash = 14695981039346656037U;
     LsmRow any = 0;
     for (int i = 0; i < count; i++) {

@@ -54,7 +54,7 @@ static const BenchSetting settings[] = {
     {BENCH_OPTION(
          "w", "W", 1,
          "Region half-width, in edges of each node's own cell (octree default: 1, the least "
-         "that holds together what touches); of a lattice, whose cells are alike, 1 to 31 "
+         "that holds together what touches); of a lattice, whose cells are alike, 1 to 32 "
          "cells"),
      BENCH_IN(Options, w)},
     {BENCH_OPTION("width", "UNIT", 1,

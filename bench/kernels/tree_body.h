@@ -21,7 +21,7 @@ SmCode bench_sampled(int side, OctStructure *body, SmError *error);
 typedef struct {
     OctStructure structure;
     BenchPrecision precision;
-    BenchTreeStep step[16]; /* [count] engines: each weighting, goal form and threads */
+    BenchTreeStep step[16]; /* [count] engines: each weighting, goal form, part and threads */
     int count;
 } BenchTreeBody;
 

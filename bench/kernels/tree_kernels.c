@@ -11,7 +11,8 @@ static SmCode prepare_step(BenchJob *job, SmError *error)
     (void)error;
     while (s < body->count &&
            (kernel->weighting != body->step[s].weighting ||
-            kernel->adjoint != body->step[s].adjoint || job->threads != body->step[s].threads))
+            kernel->adjoint != body->step[s].adjoint || job->threads != body->step[s].threads ||
+            (kernel->part == BENCH_TREE_SUMS) != body->step[s].stages))
         s++;
     BenchTreeStep *step = &body->step[s];
     if (s == body->count) {

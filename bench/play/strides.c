@@ -37,12 +37,14 @@ static bool passes(const SmObstacle *o, double thick, const double before[3], co
     return false;
 }
 
-/* The deepest contact, cells. */
+/* The deepest contact of a lattice, cells: nodes of an octree are as deep as they are wide. */
 static double deepest(const BenchRunner *runner, double cell)
 {
+    const SmEngineType *type = runner->type;
     SmContact *contact = NULL;
     double most = 0;
-    long count = runner->type->contacts ? runner->type->contacts(runner->engine, NULL, &contact) : 0;
+    long count =
+        type->by_cells && type->contacts ? type->contacts(runner->engine, NULL, &contact) : 0;
     for (long i = 0; i < count; i++) most = fmax(most, contact[i].depth / cell);
     free(contact);
     return most;

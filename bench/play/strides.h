@@ -10,7 +10,7 @@ typedef struct {
     double (*x)[3]; /* [count]: where the particles of the only group were at the last look */
     long count;
     double farthest, through[BENCH_MAX]; /* that a step took one; and through each obstacle */
-    double deepest;                      /* contact after a frame, cells */
+    double deepest;                      /* contact of lattices after a frame, cells */
 } BenchStrides;
 
 /* After a frame. Steps are told by where particles were after the one before, along a line. False:

@@ -18,7 +18,7 @@ typedef struct {
     char checked[BENCH_BUILDS][sizeof((BenchRow *)0)->state_hash]; /* their state's, or empty */
     bool refused[BENCH_BUILDS]; /* the build cannot be told that */
     int processes;              /* so far */
-    int repeats;                /* after each build's first process; 0: as the task says */
+    int repeats;                /* of further ones; 0: as the task says */
     char reason[224];           /* why the old one has not */
 } State;
 
@@ -47,8 +47,7 @@ static void make_words(const BenchAbRunner *runner, const BenchTask *task, const
         {"--checked", checked},     {"-o", output},
     };
     snprintf(number[0], 32, "%d", task->threads > 0 ? task->threads : 1);
-    snprintf(number[1], 32, "%d",
-             state->processes > 1 && state->repeats ? state->repeats : task->repeats);
+    snprintf(number[1], 32, "%d", state->repeats ? state->repeats : task->repeats);
     snprintf(number[2], 32, "%.6g", task->block);
     snprintf(number[3], 32, "%lu", runner->seed);
     word[count++] = runner->program[build];
@@ -91,15 +90,16 @@ static void say_why(const State *state, BenchAbScene *samples)
         snprintf(old->reason, sizeof old->reason, "%s", state->reason);
 }
 
-/* Of what is one row: its state; and how many repeats fit, but where a file is compared with, which
- * has as many as the task: of fewer the least is larger. */
+/* Of what is one row: its state; and, once both builds have had as many processes, how many repeats
+ * fit, but where a file is compared with, which has as many as the task: of fewer the least is
+ * larger. */
 static void note_row(const BenchAbRunner *runner, const BenchTask *task, BenchBuild build,
                      const BenchRow *row, State *state)
 {
     if (!row->valid || row->busy) return;
     if (!state->refused[build])
         memcpy(state->checked[build], row->state_hash, sizeof row->state_hash);
-    if (!runner->program[BENCH_OLD] || state->repeats) return;
+    if (!runner->program[BENCH_OLD] || state->repeats || state->processes % 2) return;
     double repeat = 2 * (row->steps + 2) * row->total_ms / 1e3;
     state->repeats = (int)fmin(fmax(BENCH_PROCESS_SECONDS / repeat, 15), task->repeats);
 }

@@ -99,7 +99,7 @@ int lsm_region_find(const LsmLattice *l, const LsmInterior *interior, long r, Ls
 {
     int w = interior->w, area = (2 * w + 1) * (2 * w + 1);
     if (!lsm_bit(l, interior->interior, l->coord[r]))
-        return (2 * w + 1 > 64 ? find_wide : find_narrow)(l, interior, r, rows, simple);
+        return (2 * w + 1 > 63 ? find_wide : find_narrow)(l, interior, r, rows, simple);
     *simple = true;
     for (int row = 0; row < area; row++) rows[row] = lsm_row_full(w);
     return (2 * w + 1) * area;

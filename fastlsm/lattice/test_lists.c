@@ -232,7 +232,7 @@ static void choose_rows(unsigned *seed, const Listed *b, long r, LsmRow *rows)
     int way = random_int(seed, 8), row = random_int(seed, b->side * b->side);
     if (way < 6) lsm_region_rows(&b->lattice, &b->interior, b->centre[r], rows);
     for (int i = 0; i < b->side * b->side; i++) {
-        uint64_t any = (uint64_t)rand_r(seed) << 16 ^ (uint64_t)rand_r(seed);
+        LsmRow any = (LsmRow)(unsigned)rand_r(seed) << 40 ^ (unsigned)rand_r(seed);
         if (way == 6)
             rows[i] =
                 any & lsm_window(&b->lattice, b->lattice.bits, at[0], at[1] + i % b->side - b->w,
