@@ -644,8 +644,20 @@ static void free_drift(const Alone *alone, bool broken, BenchDrift *drift)
     }
 }
 
+static BenchDrift drift_over(Alone alone)
+{
+    BenchDrift drift = {.steps = alone.steps, .apart = 1};
+    drift.held = held_drift(alone);
+    drift.touching = touching_drift(alone);
+    memset(alone.params.gravity, 0, sizeof alone.params.gravity);
+    free_drift(&alone, is_in_pieces(alone.runner), &drift);
+    drift.hung = hung_drift(alone);
+    return drift;
+}
+
 BenchDrift bench_drift(const BenchRunner *runner)
 {
+    char why[200];
     size_t bodies = (size_t)(runner->particles / runner->count);
     double *mass = sm_alloc((size_t)runner->count, sizeof *mass);
     Alone alone = {.runner = runner,
@@ -657,15 +669,14 @@ BenchDrift bench_drift(const BenchRunner *runner)
                    .before = sm_alloc(bodies, sizeof *alone.before),
                    .after = sm_alloc(bodies, sizeof *alone.after)};
     alone.steps = alone.steps < 128 ? 128 : alone.steps > 1024 ? 1024 : alone.steps;
-    BenchDrift drift = {.steps = alone.steps, .apart = 1};
     if (alone.params.strain_limit > 0) alone.params.strain_limit = INFINITY;
     if (runner->particles > 10000) alone.params.threads = 0; /* all: the bits are the same */
     runner->type->masses(runner->engine, mass);
-    drift.held = held_drift(alone);
-    drift.touching = touching_drift(alone);
-    memset(alone.params.gravity, 0, sizeof alone.params.gravity);
-    free_drift(&alone, is_in_pieces(runner), &drift);
-    drift.hung = hung_drift(alone);
+    BenchDrift drift = drift_over(alone);
+    if (!bench_drift_verdict(&drift, runner->type->precision, sizeof why, why)) {
+        alone.steps *= 8;
+        drift = drift_over(alone);
+    }
     sm_free_all(alone.before, alone.after, mass);
     return drift;
 }

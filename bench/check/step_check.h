@@ -41,12 +41,12 @@ void bench_check_obstacles(const BenchCheck *check, const BenchScene *scene,
 
 /* Puts the runner's present state into an engine built alike, leaves that alone, without handles,
  * obstacles, contacts, breaking and gravity, for as many steps as make some 3e7 of one particle
- * (128 to 1024: in fewer the momenta's trembling, which does not grow, is what is seen), and
- * compares linear and angular momentum of each instance before and after. Does so with gravity on
- * the scene's planes, without friction, which leave the momentum along them as it is, unless bodies
- * slide down them; with contacts, which leave that of all bodies; and where handles hold some, with
- * one of their particles held where it is, about which the body goes on turning. Infinite if not
- * finite. */
+ * (128 to 1024, and eight times as many where that fails: in fewer the momenta's trembling, which
+ * does not grow, is what is seen), and compares linear and angular momentum of each instance before
+ * and after. Does so with gravity on the scene's planes, without friction, which leave the momentum
+ * along them as it is, unless bodies slide down them; with contacts, which leave that of all
+ * bodies; and where handles hold some, with one of their particles held where it is, about which
+ * the body goes on turning. Infinite if not finite. */
 BenchDrift bench_drift(const BenchRunner *runner);
 
 /* May it be: at most 5e-9 each in "single", 1e-14 in "double" precision, a fifth of that along
