@@ -54,8 +54,6 @@ typedef struct {
     double avx2_share; /* the share of the floor that is wanted by AVX2; 0: no limit */
     SmSummation summation;
     SmPolarMethod polar;
-    OctWeighting weighting;
-    bool adjoint; /* goal positions by the transpose of the region sums */
     double damping;
     int threads;       /* 0: as asked for */
     bool doubled;      /* in double precision, beside single */

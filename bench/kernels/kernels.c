@@ -39,10 +39,6 @@
 #define BODIES(number, body)                                                                       \
     BODY(number, body, 1, 0, false), BODY(number, body, 4, 2, false),                              \
         BODY(number, body, 10, 3.3, true)
-#define HAND(label, ...)                                                                           \
-    {                                                                                              \
-        "oct-hand-" label, "octree", &bench_tree_step_kernels, 50, .side = BENCH_HAND, __VA_ARGS__ \
-    }
 /* The cost of a change does not grow with the body: at most twice the processor time that it takes
  * in 10^3 nodes, whose caches the others outgrow. */
 #define CHANGE(number, of, label, which, ...)                                                      \
@@ -93,9 +89,8 @@ static const BenchKernel kernels[] = {
     STEP("scale-1e5", "scaling", 40, 46, 1, .base = "scale-1e4", .wanted = 1.25),
     STEP("scale-1e6", "scaling", 40, 100, 1, .base = "scale-1e4", .wanted = 1.25),
     STEP("scale-1e7", "scaling", 40, 215, 1, .large = true, .base = "scale-1e4", .wanted = 1.25),
-    HAND("step", .at_most = 60e3, .avx2_share = 0.20, .paper = "4.5 ms"),
-    HAND("step-plain", .weighting = OCT_PLAIN),
-    HAND("step-adjoint", .adjoint = true),
+    {"oct-hand-step", "octree", &bench_tree_step_kernels, 50, .side = BENCH_HAND, .at_most = 60e3,
+     .avx2_share = 0.20, .paper = "4.5 ms"},
     CHANGE(60, 10, "oct-refine-1e3", BENCH_REFINE, .at_most = 0),
     CHANGE(60, 10, "oct-cut-1e3", BENCH_CUT, .at_most = 0),
     CHANGES(61, 22, "1e4", .at_most = 0),

@@ -56,7 +56,7 @@ SmCode bench_tree_body_open(const BenchKernel *kernel, const BenchKernelParams *
 void bench_tree_body_close(void *of)
 {
     BenchTreeBody *body = of;
-    for (int s = 0; s < body->count; s++) bench_tree_steps(body->precision)->free(&body->step[s]);
+    if (body->step.engine) bench_tree_steps(body->precision)->free(&body->step);
     oct_structure_free(&body->structure);
     free(body);
 }

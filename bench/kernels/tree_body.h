@@ -17,12 +17,11 @@ enum { BENCH_HAND = 0 };
  * structure; of a cube SM_MEMORY (memory.h); on which `body` is zeroed. The caller frees. */
 SmCode bench_sampled(int side, OctStructure *body, SmError *error);
 
-/* What the octree's kernels of a set share. */
+/* What an octree's kernel is timed on, a set each. */
 typedef struct {
     OctStructure structure;
     BenchPrecision precision;
-    BenchTreeStep step[16]; /* [count] engines: each weighting, goal form, part and threads */
-    int count;
+    BenchTreeStep step;
 } BenchTreeBody;
 
 /* A kind's open() and close(). */

@@ -1,4 +1,3 @@
-#include <assert.h>
 #include <stdio.h>
 
 #include "tree_body.h"
@@ -7,25 +6,13 @@ static SmCode prepare_step(BenchJob *job, SmError *error)
 {
     const BenchKernel *kernel = job->kernel;
     BenchTreeBody *body = job->body;
-    int s = 0;
+    BenchTreeStep *step = &body->step;
     (void)error;
-    while (s < body->count &&
-           (kernel->weighting != body->step[s].weighting ||
-            kernel->adjoint != body->step[s].adjoint || job->threads != body->step[s].threads ||
-            (kernel->part == BENCH_TREE_SUMS) != body->step[s].stages))
-        s++;
-    BenchTreeStep *step = &body->step[s];
-    if (s == body->count) {
-        assert(body->count < (int)(sizeof body->step / sizeof *body->step));
-        body->count++;
-        *step = (BenchTreeStep){.body = &body->structure,
-                                .weighting = kernel->weighting,
-                                .adjoint = kernel->adjoint,
-                                .stages = kernel->part == BENCH_TREE_SUMS,
-                                .threads = job->threads,
-                                .seed = job->params->seed};
-        bench_tree_steps(body->precision)->create(step);
-    }
+    *step = (BenchTreeStep){.body = &body->structure,
+                            .stages = kernel->part == BENCH_TREE_SUMS,
+                            .threads = job->threads,
+                            .seed = job->params->seed};
+    bench_tree_steps(body->precision)->create(step);
     job->trial = &step->trial;
     job->item = kernel->side == BENCH_HAND ? "step" : "node";
     job->items = kernel->side == BENCH_HAND ? 1 : body->structure.tree.leaves;

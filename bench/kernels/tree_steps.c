@@ -88,8 +88,7 @@ static void check(BenchTreeStep *step)
             x[leaf][d] = get(oct, oct->body->x, leaf, d, true);
             v[leaf][d] = get(oct, oct->body->v, leaf, d, false);
         }
-    ref_tree_init(&step->body->tree, &step->body->regions, step->body->mass,
-                  step->weighting == OCT_PLAIN, &twin);
+    ref_tree_init(&step->body->tree, &step->body->regions, step->body->mass, false, &twin);
     ref_tree_goals(&twin, (const double(*)[3])x, false, g);
     oct_goals(oct);
     require(step, "goals", deviation(oct, oct->body->g, (const double(*)[3])g), tolerance);
@@ -129,10 +128,7 @@ static bool finite_at_end(void *subject)
 static void create(BenchTreeStep *step)
 {
     const OctStructure *body = step->body;
-    OctParams params = {.weighting = step->weighting,
-                        .form = step->adjoint ? OCT_ADJOINT : OCT_HIERARCHICAL,
-                        .damping = damping,
-                        .threads = step->threads};
+    OctParams params = {.damping = damping, .threads = step->threads};
     Oct *oct = oct_build(&body->tree, &body->regions, body->mass, &params);
     step->engine = oct;
     step->trial = (BenchTrial){.timed = {step, start, run_step},

@@ -17,9 +17,7 @@ enum { BENCH_TREE_STEP, BENCH_TREE_SUMS };
 typedef struct {
     BenchTrial trial;         /* with times of stages where they are wanted */
     const OctStructure *body; /* set by the caller, as the next ones */
-    OctWeighting weighting;
-    bool adjoint; /* goal positions by the transpose of the region sums */
-    bool stages;  /* are times of stages wanted? */
+    bool stages;              /* are times of stages wanted? */
     int threads;
     unsigned long seed;
     /* found */
