@@ -611,6 +611,47 @@ static void step_faster(SmEngine *engine, SmLaps *laps)
     free(value);
 }
 
+/* As it should, but faster by that once in each look at what drifts, or in every step. */
+static long steps_taken;
+static bool every_step;
+
+static void step_jolted(SmEngine *engine, SmLaps *laps)
+{
+    bool jolts = every_step || steps_taken == 0 || steps_taken == 1024;
+    (jolts ? step_faster : honest->step)(engine, laps);
+    steps_taken++;
+}
+
+/* 8e-6 cells a step are 8e-9 of each of 1,024 steps, and 1e-9 of each of 8,192. */
+TEST(what_trembles_has_not_drifted)
+{
+    static bool all[LONG * WIDE * 4];
+    for (int d = 0; d < 2; d++) {
+        Plate plate;
+        char reason[160];
+        plate_create(&fastlsm_engine_f32, 0, false, &plate);
+        place(&plate, false, false);
+        wrong_type(&plate)->step = step_jolted;
+        assert_in_range(plate.count, 1, sizeof all);
+        memset(all, 1, sizeof all);
+        fast = all;
+        steps_taken = 0;
+        every_step = d;
+        faster_by = (d ? 8e-9 : 8e-6) * 0.3 / 0.01;
+        BenchDrift found = bench_drift(&(BenchRunner){.scene = &plate.scene,
+                                                      .body = &plate.body,
+                                                      .type = plate.type,
+                                                      .engine = plate.engine,
+                                                      .particles = plate.count,
+                                                      .count = plate.count});
+        assert_int_equal(steps_taken, 1024 + 8192);
+        assert_int_equal(found.steps, 8192);
+        if (bench_drift_verdict(&found, "single", sizeof reason, reason) != !d)
+            fail_msg("%g a step", found.linear);
+        plate_free(&plate);
+    }
+}
+
 /* What damping changes is checked elsewhere; undamped, velocities are eq. 1's. */
 TEST(undamped_velocities_are_eq_1s)
 {

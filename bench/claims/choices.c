@@ -85,8 +85,7 @@ static void set_free(BenchScene *scene, const BenchMeasure *measure, int kick)
     scene->handle_count = scene->force_count = scene->obstacle_count = 0;
     scene->cut_count = scene->touch_count = scene->view.level = 0;
     scene->params.damping = measure->damping / 100.0;
-    if (measure->width) scene->params.w = measure->width;
-    if (measure->width) scene->octree.width.edges = measure->width;
+    if (measure->width) scene->octree.width.edges = scene->params.w = measure->width;
     scene->params.collide = (SmCollideParams){0};
     memset(scene->params.gravity, 0, sizeof scene->params.gravity);
     scene->bend = 0.7;

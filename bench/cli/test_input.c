@@ -50,37 +50,30 @@ TEST(pipes_and_devices_are_refused_at_once)
         assert_refused(commands[i], "pipe or device");
 }
 
-#define BOX(low)                                                                                   \
-    "gravity = [0.0, -9.81, 0.0]; boxes = ( { low = [-1.0, " low                                   \
-    ", -1.0]; high = [1.0, -1.0, 1.0]; } );"
-#define STACK                                                                                      \
-    "gravity = [-9.81, 0.0, 0.0]; planes = ( { point = [-0.22, 0.0, 0.0];"                         \
-    "normal = [1.0, 0.0, 0.0]; } ); instances = 2; spacing = 0.999; collide = { bodies = true; };"
-
-/* Bodies that fall through a thin box, or into each other, are told of, and what is said of it
- * holds them. */
+/* Bodies that fall through a thin box are told of, and what is said of the box holds them. */
 TEST(a_step_too_long_is_said)
 {
     static const struct {
-        const char *scene, *option, *said;
-    } with[] = {{BOX("-1.02"), "", "particles passed through box 1, which is 0.02 thick"},
-                {BOX("-1.14"), "", ""},
-                {BOX("-1.02"), " --h 0.001 --steps 100", ""},
-                {BOX("-1.02"), " --h 10", "a step took a particle up to "},
-                {STACK, "", "cells deep in each other, and may go through: --h 0.00"},
-                {STACK, " --h 0.0039 --steps 25", ""}};
-    for (size_t i = 0; i < sizeof with / sizeof *with; i++) {
+        double low;
+        const char *option, *said;
+    } box[] = {{-1.02, "", "particles passed through box 1, which is 0.02 thick"},
+               {-1.14, "", ""},
+               {-1.02, " --h 0.001 --steps 100", ""},
+               {-1.02, " --h 10", "a step took a particle up to "}};
+    for (int i = 0; i < 4; i++) {
         char text[512], line[128];
         Result result;
-        snprintf(text, sizeof text,
-                 "mesh = \"shape:block\"; particles = 216; damping = 0.1; w = 2; %s\n"
-                 "steps_per_frame = 10; frames = 10;\n",
-                 with[i].scene);
+        snprintf(
+            text, sizeof text,
+            "mesh = \"shape:block\"; particles = 60; damping = 0.1; gravity = [0.0, -9.81, 0.0];"
+            "boxes = ( { low = [-1.0, %g, -1.0]; high = [1.0, -1.0, 1.0]; } );\n"
+            "steps_per_frame = 10; frames = 10;\n",
+            box[i].low);
         write_text("thin.cfg", text);
-        snprintf(line, sizeof line, "run thin.cfg --no-output%s", with[i].option);
+        snprintf(line, sizeof line, "run thin.cfg --no-output%s", box[i].option);
         run_with("", line, &result);
-        if (*with[i].said ? !strstr(result.err, with[i].said) : *result.err)
-            fail_msg("%zu: %s", i, result.err);
+        if (*box[i].said ? !strstr(result.err, box[i].said) : *result.err)
+            fail_msg("%d: %s", i, result.err);
     }
 }
 

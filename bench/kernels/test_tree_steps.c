@@ -1,7 +1,7 @@
 /* Steps of the octree that are timed: wrong ones are found, and what they do is counted. */
 #include "../../lib/test_frame.h"
-#include "../../octree/operations.h"
 #include "tree_body.h"
+#include "tree_steps.h"
 
 /* A cube whose first region has lost a summation node that is not its own. */
 static void lose_member(OctStructure *body)

@@ -1,7 +1,5 @@
 #include "tree_body.h"
 
-#include <stdlib.h>
-
 #include "../../lib/shapes/shape.h"
 #include "../scene/memory.h"
 
@@ -43,25 +41,4 @@ SmCode bench_sampled(int side, OctStructure *body, SmError *error)
     code = oct_structure_build(&voxels, &options, NULL, body, error);
     sm_voxels_free(&voxels);
     return code;
-}
-
-SmCode bench_tree_body_open(const BenchKernel *kernel, const BenchKernelParams *params, void **body,
-                            SmError *error)
-{
-    BenchTreeBody *made = *body = sm_alloc(1, sizeof *made);
-    made->precision = params->precision;
-    return bench_sampled(kernel->side, &made->structure, error);
-}
-
-void bench_tree_body_close(void *of)
-{
-    BenchTreeBody *body = of;
-    if (body->step.engine) bench_tree_steps(body->precision)->free(&body->step);
-    oct_structure_free(&body->structure);
-    free(body);
-}
-
-SmOperations bench_tree_body_operations(const BenchTreeBody *body, SmOperations node)
-{
-    return sm_operations_add((SmOperations){0}, (double)body->structure.tree.leaves, node);
 }

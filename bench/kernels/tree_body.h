@@ -7,8 +7,7 @@
 #ifndef BENCH_TREE_BODY_H
 #define BENCH_TREE_BODY_H
 
-#include "kernel.h"
-#include "tree_steps.h"
+#include "../../octree/change/structure.h"
 
 /* The body that is no cube, in place of a side. */
 enum { BENCH_HAND = 0 };
@@ -16,20 +15,5 @@ enum { BENCH_HAND = 0 };
 /* A cube of side^3 nodes, or the hand. Errors: those of making the shape, its voxels and its
  * structure; of a cube SM_MEMORY (memory.h); on which `body` is zeroed. The caller frees. */
 SmCode bench_sampled(int side, OctStructure *body, SmError *error);
-
-/* What an octree's kernel is timed on, a set each. */
-typedef struct {
-    OctStructure structure;
-    BenchPrecision precision;
-    BenchTreeStep step;
-} BenchTreeBody;
-
-/* A kind's open() and close(). */
-SmCode bench_tree_body_open(const BenchKernel *kernel, const BenchKernelParams *params, void **body,
-                            SmError *error);
-void bench_tree_body_close(void *body);
-
-/* What so much for a node is for the body. */
-SmOperations bench_tree_body_operations(const BenchTreeBody *body, SmOperations node);
 
 #endif

@@ -1,11 +1,37 @@
 #include <stdio.h>
+#include <stdlib.h>
 
+#include "kernel.h"
 #include "tree_body.h"
+#include "tree_steps.h"
+
+/* What a set has: one kernel. */
+typedef struct {
+    OctStructure structure;
+    BenchPrecision precision;
+    BenchTreeStep step;
+} Body;
+
+static SmCode open_body(const BenchKernel *kernel, const BenchKernelParams *params, void **body,
+                        SmError *error)
+{
+    Body *made = *body = sm_alloc(1, sizeof *made);
+    made->precision = params->precision;
+    return bench_sampled(kernel->side, &made->structure, error);
+}
+
+static void close_body(void *of)
+{
+    Body *body = of;
+    if (body->step.engine) bench_tree_steps(body->precision)->free(&body->step);
+    oct_structure_free(&body->structure);
+    free(body);
+}
 
 static SmCode prepare_step(BenchJob *job, SmError *error)
 {
     const BenchKernel *kernel = job->kernel;
-    BenchTreeBody *body = job->body;
+    Body *body = job->body;
     BenchTreeStep *step = &body->step;
     (void)error;
     *step = (BenchTreeStep){.body = &body->structure,
@@ -28,19 +54,18 @@ static double step_seconds(const BenchJob *job, int r)
 
 static void report_step(BenchJob *job, BenchKernelRow *row)
 {
-    const BenchTreeBody *body = job->body;
     const BenchTreeStep *step = job->trial->timed.subject;
     const char *paper = job->kernel->paper;
-    double nodes = (double)body->structure.tree.leaves;
-    job->least = bench_tree_body_operations(body, oct_step_operations(&step->counts));
+    double nodes = (double)step->body->tree.leaves;
+    job->least = sm_operations_add((SmOperations){0}, nodes, oct_step_operations(&step->counts));
     job->footprint = nodes * oct_node_bytes(&step->counts, job->precision == BENCH_F32 ? 4 : 8);
     snprintf(row->note, sizeof row->note, "%s%s%s%.1f ns a node; %.2f summation nodes",
              paper ? "paper: " : "", paper ? paper : "", paper ? "; " : "", row->ns / nodes,
              step->body->regions.mean);
 }
 
-const BenchKernelKind bench_tree_step_kernels = {.open = bench_tree_body_open,
-                                                 .close = bench_tree_body_close,
+const BenchKernelKind bench_tree_step_kernels = {.open = open_body,
+                                                 .close = close_body,
                                                  .prepare = prepare_step,
                                                  .seconds = step_seconds,
                                                  .report = report_step};

@@ -37,19 +37,6 @@ static bool passes(const SmObstacle *o, double thick, const double before[3], co
     return false;
 }
 
-/* The deepest contact of a lattice, cells: nodes of an octree are as deep as they are wide. */
-static double deepest(const BenchRunner *runner, double cell)
-{
-    const SmEngineType *type = runner->type;
-    SmContact *contact = NULL;
-    double most = 0;
-    long count =
-        type->by_cells && type->contacts ? type->contacts(runner->engine, NULL, &contact) : 0;
-    for (long i = 0; i < count; i++) most = fmax(most, contact[i].depth / cell);
-    free(contact);
-    return most;
-}
-
 bool bench_strides_look(BenchStrides *strides, const BenchPlayback *play)
 {
     const BenchScene *scene = play->scene;
@@ -59,7 +46,6 @@ bool bench_strides_look(BenchStrides *strides, const BenchPlayback *play)
         double(*x)[3] = sm_alloc((size_t)runner->particles, sizeof *x);
         bool followed = play->count == 1 && strides->count == runner->particles;
         runner->type->get(runner->engine, SM_POSITION, x);
-        strides->deepest = fmax(strides->deepest, deepest(runner, play->body->voxels.cell));
         for (long i = 0; i < runner->particles; i++) {
             sum += 0 * (x[i][0] + x[i][1] + x[i][2]);
             if (!followed) continue;
@@ -97,8 +83,4 @@ void bench_strides_remark(const BenchStrides *strides, const BenchPlayback *play
         bench_remark("%s: a step took a particle up to %.3g times as far as the body is large: "
                      "--h %.2g is short enough to see it move",
                      scene->name, strides->farthest / size, 0.1 * h * size / strides->farthest);
-    if (strides->deepest > 1)
-        bench_remark("%s: what collides was up to %.2g cells deep in each other, and may go "
-                     "through: --h %.2g holds it better",
-                     scene->name, strides->deepest, 0.5 * h / sqrt(strides->deepest));
 }

@@ -1,5 +1,5 @@
-/* strides.h - how far particles go in a step: farther than the body is large, through an obstacle,
- * which puts out at the nearest side what it finds within, or deep into what they collide with. */
+/* strides.h - how far particles go in a step: farther than the body is large, or through an
+ * obstacle, which puts out at the nearest side what it finds within. */
 #ifndef BENCH_STRIDES_H
 #define BENCH_STRIDES_H
 
@@ -10,7 +10,6 @@ typedef struct {
     double (*x)[3]; /* [count]: where the particles of the only group were at the last look */
     long count;
     double farthest, through[BENCH_MAX]; /* that a step took one; and through each obstacle */
-    double deepest;                      /* contact of lattices after a frame, cells */
 } BenchStrides;
 
 /* After a frame. Steps are told by where particles were after the one before, along a line. False:
